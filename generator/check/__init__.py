@@ -1,0 +1,46 @@
+"""The named rules over the model, and the ledger that explains what they find."""
+
+from collections.abc import Callable, Iterator
+
+from generator.check import citations, codes, errors, objects
+from generator.check.finding import Finding
+from generator.check.ledger import settle
+from generator.diagnostics import Problems
+from generator.model import Device, Model
+
+RULES: tuple[Callable[[Model, Device], Iterator[Finding]], ...] = (
+    codes.printed_indexes,
+    codes.names,
+    codes.attribute_rows,
+    codes.ranges,
+    codes.defaults,
+    codes.selections,
+    codes.bits,
+    codes.identifiers,
+    codes.mirrors,
+    objects.values,
+    objects.standard,
+    objects.mandatory,
+    objects.code_references,
+    objects.mirrors,
+    errors.numbers,
+    errors.names,
+    errors.responses,
+    errors.adjustable_codes,
+)
+"""Every check: a function from a device to the disagreements that it sees."""
+
+
+def check(model: Model, problems: Problems) -> None:
+    """Check every device and the sources.
+
+    Raises:
+        DiagnosticsError: A disagreement that no erratum explains, or an erratum that explains none.
+    """
+    citations.check(model, problems)
+    for device in model.devices:
+        settle(device, [finding for rule in RULES for finding in rule(model, device)], problems)
+    problems.stop()
+
+
+__all__ = ["Finding", "check"]

@@ -1,0 +1,157 @@
+"""Command line: ``python -m generator build | check | census | explain``."""
+
+import argparse
+import json
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+
+from generator import VERSION
+from generator.write import digest, is_current, write
+
+_STATE = ".state.json"
+_ROOT = Path(__file__).resolve().parent.parent
+
+_EPILOG = """\
+The way of the data:  spec/*.yaml -> load -> elaborate -> check -> emit -> generated/
+
+Examples:
+  python -m generator build                     make what is missing or out of date
+  python -m generator check                     look for problems, write nothing
+  python -m generator check --format json       the same for an editor or CI
+  python -m generator census > facts.txt        all facts, one a line; compare two with diff
+  python -m generator explain code-index        what a rule demands
+
+Exit status: 0 done, 1 problems in spec (nothing is written), 2 wrong usage.
+"""
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run one command; returns the exit status."""
+    parser = _parser()
+    options = parser.parse_args(arguments)
+    if options.command == "explain":
+        return _explain(options.rule)
+    if not options.spec.is_dir():
+        parser.error(f"there is no folder {options.spec}")
+    if options.command == "build":
+        return _build(options.spec, options.out, options.format)
+    return _report(options.spec, options.format, census=options.command == "census")
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(
+        prog="python -m generator",
+        description="Compile transcribed drive manuals to EDS, C, Python, Rust, JSON and HTML.",
+        epilog=_EPILOG,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    parser.add_argument("--version", action="version", version=f"drivespec {VERSION}")
+    commands = parser.add_subparsers(dest="command", required=True, metavar="command")
+    common = argparse.ArgumentParser(add_help=False)
+    common.add_argument("--spec", type=Path, default=_ROOT / "spec", help="folder of the spec (default: spec)")
+    common.add_argument("--format", choices=("text", "json"), default="text", help="form of the diagnostics")
+    build = commands.add_parser("build", parents=[common], help="check the spec and write every artifact")
+    build.add_argument("--out", type=Path, default=_ROOT / "generated", help="folder of the artifacts (default: generated)")
+    commands.add_parser("check", parents=[common], help="check the spec and write nothing")
+    commands.add_parser("census", parents=[common], help="print every fact, one a line, and the coverage of each manual")
+    explain = commands.add_parser("explain", help="say what a rule demands")
+    explain.add_argument("rule", nargs="?", help="id of the rule, as in error[RULE]; without it all rules are listed")
+    return parser
+
+
+def _label(spec: Path) -> str:
+    """Name of the spec folder in messages: relative to the working folder where it lies below it."""
+    try:
+        return spec.resolve().relative_to(Path.cwd()).as_posix()
+    except ValueError:
+        return spec.as_posix()
+
+
+def _build(spec: Path, out: Path, style: str) -> int:
+    sources = _digests(spec)
+    state = digest(json.dumps([VERSION, _digests(_ROOT / "generator"), _digests(_ROOT / "templates"), sources]).encode())
+    if _state(out) == state and is_current(out):
+        print(f"{out.name}: up to date")
+        return 0
+    from generator.diagnostics import DiagnosticsError
+    from generator.pipeline import compile_model, render
+
+    try:
+        files = render(compile_model(spec, _label(spec)))
+    except DiagnosticsError as error:
+        return _show(error, spec, style)
+    changed = write(out, files, sources)
+    (out / _STATE).write_text(json.dumps(state), encoding="ascii")
+    print(f"{out.name}: {len(files)} artifacts, {len(changed)} files changed")
+    return 0
+
+
+def _digests(folder: Path) -> dict[str, str]:
+    """Digests of the files below a folder that go into a build, by path."""
+    return {
+        path.relative_to(folder).as_posix(): digest(path.read_bytes())
+        for path in sorted(folder.rglob("*"))
+        if path.is_file() and "__pycache__" not in path.parts and not path.name.startswith(".")
+    }
+
+
+def _state(out: Path) -> str | None:
+    try:
+        value = json.loads((out / _STATE).read_bytes())
+    except (OSError, ValueError):
+        return None
+    return value if isinstance(value, str) else None
+
+
+def _report(spec: Path, style: str, *, census: bool) -> int:
+    from generator.diagnostics import DiagnosticsError
+    from generator.pipeline import compile_model
+
+    try:
+        model = compile_model(spec, _label(spec))
+    except DiagnosticsError as error:
+        return _show(error, spec, style)
+    if census:
+        from generator.census import lines
+
+        sys.stdout.write("".join(f"{line}\n" for line in lines(model)))
+    elif style == "json":
+        print("[]")
+    else:
+        counts = ", ".join(f"{d.id}: {len(d.codes)} codes, {len(d.objects)} objects" for d in model.devices)
+        print(f"no problems ({counts})")
+    return 0
+
+
+def _show(error: Exception, spec: Path, style: str) -> int:
+    from generator.diagnostics import DiagnosticsError, SourceText, as_json, as_text
+
+    assert isinstance(error, DiagnosticsError)
+    if style == "json":
+        sys.stdout.write(as_json(error.diagnostics))
+        return 1
+    root = spec.resolve()
+    for _ in Path(_label(spec)).parts:
+        root = root.parent
+    sys.stderr.write(as_text(error.diagnostics, SourceText(root if not Path(_label(spec)).is_absolute() else Path("/"))))
+    count = len(error.diagnostics)
+    sys.stderr.write(f"\n{count} problem{'s' if count > 1 else ''}; nothing was written\n")
+    return 1
+
+
+def _explain(rule: str | None) -> int:
+    from generator.rules import RULES
+
+    if rule is None:
+        width = max(len(name) for name in RULES)
+        for name, text in RULES.items():
+            print(f"{name:{width}}  {text}")
+        return 0
+    if rule not in RULES:
+        from generator.diagnostics import suggestion
+
+        print(f"there is no rule '{rule}'; {suggestion(rule, list(RULES), 'rules')}", file=sys.stderr)
+        return 2
+    print(f"{rule}: {RULES[rule]}")
+    return 0

@@ -1,0 +1,36 @@
+"""From loaded files to the model: notations read, runs and slots expanded, references resolved by name."""
+
+from generator.diagnostics import Problems
+from generator.elaborate.codes import Facts
+from generator.elaborate.device import device, drive
+from generator.elaborate.manuals import manual, standard
+from generator.model import Model
+from generator.spec import Spec
+
+
+def elaborate(spec: Spec, problems: Problems) -> Model:
+    """The model of a spec.
+
+    Raises:
+        DiagnosticsError: A notation, name or run is wrong; all such problems at once.
+    """
+    manuals = {m.id: m for m in (manual(file) for file in spec.manuals)}
+    standards = [standard(file, manuals) for file in spec.standards]
+    drives = {name: drive(files["drive"], manuals) for name, files in spec.drives.items()}
+    shared = {
+        name: Facts(files["codes"].root, "codes", "code") if "codes" in files else None
+        for name, files in spec.drives.items()
+    }
+    objects = tuple(o for objects, _ in standards for o in objects)
+    devices = [device(files, manuals, drives, shared, objects) for _, files in sorted(spec.devices.items())]
+    problems.stop()
+    assert spec.release is not None
+    return Model(
+        version=str(spec.release.data["version"]),
+        date=str(spec.release.data["date"]),
+        devices=tuple(d for d in devices if d is not None),
+        drives=tuple(drives.values()),
+        manuals=tuple(manuals.values()),
+        standard_objects=objects,
+        cob_ids=tuple(c for _, cob_ids in standards for c in cob_ids),
+    )

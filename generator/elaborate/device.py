@@ -1,0 +1,204 @@
+"""Devices and base drives."""
+
+from collections.abc import Mapping, Sequence
+
+from generator.diagnostics import suggestion
+from generator.elaborate import codes as code_table
+from generator.elaborate import errata as ledger
+from generator.elaborate import errors as error_table
+from generator.elaborate import objects as object_table
+from generator.elaborate.common import known_manual, optional_text, origin
+from generator.elaborate.manuals import object_run
+from generator.model import (
+    BitField,
+    CanOpenFacts,
+    CodeRef,
+    Device,
+    Drive,
+    DriveCommand,
+    DriveModule,
+    ErrorRef,
+    Manual,
+    ObjectRef,
+    Response,
+    Slot,
+    StandardObject,
+)
+from generator.notation import RefRun, references
+from generator.tree import Node, SourceFile
+
+NO_INDEX_BASE = 0
+"""Index base of devices without codes."""
+
+
+def drive(file: SourceFile, manuals: Mapping[str, Manual]) -> Drive:
+    """A base drive of spec/drives."""
+    root = file.root
+    _check_folder(root, "drive", file.stem)
+    base = root.child("index_base")
+    number = root.child("error_number")
+    assert base is not None and number is not None
+    layout = number.child("fields")
+    assert layout is not None
+    result = Drive(
+        id=file.stem,
+        title=str(root.get("title")),
+        manufacturer=str(root.get("manufacturer")),
+        index_base=int(base.get("value")),
+        index_base_cites=tuple(file.cite(text, base.at("cites")) for text in base.texts("cites")),
+        responses=tuple(
+            Response(
+                value=int(node.get("value")),
+                name=str(node.get("name")),
+                aliases=node.texts("aliases"),
+                origin=origin(node),
+                cite=node.cite(),
+            )
+            for node in root.items("responses")
+        ),
+        error_fields=tuple(
+            (name, BitField(*(int(b) for b in str(run).split("...")), name)) for name, run in layout.data.items()
+        ),
+        error_fields_origin=origin(number),
+        error_fields_cite=number.cite(),
+        modules=tuple(
+            DriveModule(value=int(n.get("value")), name=str(n.get("name")), origin=origin(n), cite=n.cite())
+            for n in root.items("modules")
+        ),
+        commands=tuple(
+            DriveCommand(value=int(n.get("value")), name=str(n.get("name")), origin=origin(n), cite=n.cite())
+            for n in root.items("commands")
+        ),
+        where=root.where,
+    )
+    for cite in (result.error_fields_cite, *result.index_base_cites):
+        known_manual(cite.manual, root, "drive", manuals)
+    return result
+
+
+def device(
+    files: Mapping[str, SourceFile],
+    manuals: dict[str, Manual],
+    drives: Mapping[str, Drive],
+    shared: Mapping[str, code_table.Facts | None],
+    standard: Sequence[StandardObject],
+) -> Device | None:
+    """A device of spec/devices, ``None`` where its manual or drive is unknown."""
+    root = files["device"].root
+    _check_folder(root, "device", files["device"].stem)
+    name = str(root.get("manual"))
+    for file in files.values():
+        known_manual(file.manual, file.root, "manual", manuals)
+    base = _drive(root, drives)
+    if name not in manuals or ("drive" in root and base is None):
+        return None
+    slots = tuple(_slots(root))
+    subjects = _subjects(files, slots)
+    resolve = ledger.resolver(*subjects)
+    entries = ledger.errata(files["errata"].root, manuals, resolve) if "errata" in files else ()
+    index = code_table.ErrataIndex({e.id: e.about for e in entries})
+    frame = code_table.Frame(
+        slots, base.index_base if base else NO_INDEX_BASE, base.id if base else None, shared.get(base.id) if base else None
+    )
+    codes = code_table.codes(files["codes"].root, frame, index) if "codes" in files else ()
+    known = {CodeRef(c.number, s.number) for c in codes for s in c.subcodes} | {c.ref for c in codes}
+    error_frame = error_table.Frame(slots, base, known, index)
+    version = root.child("version")
+    return Device(
+        id=files["device"].stem,
+        title=str(root.get("title")),
+        manufacturer=str(root.get("manufacturer")),
+        order_code=str(root.get("order_code")),
+        manual=manuals[name],
+        bus=str(root.get("bus")),
+        drive=base,
+        hardware_version=optional_text(version, "hardware") if version else None,
+        software_version=optional_text(version, "software") if version else None,
+        cite=root.cite(),
+        slots=slots,
+        canopen=_canopen(root),
+        attributes=root.cite("attributes") if "attributes" in root else None,
+        codes=codes,
+        objects=object_table.objects(files["objects"].root, standard, index) if "objects" in files else (),
+        errors=error_table.errors(files["errors"].root, error_frame) if "errors" in files else (),
+        errata=entries,
+        where=root.where,
+    )
+
+
+def _check_folder(root: Node, key: str, folder: str) -> None:
+    if root.get(key) != folder:
+        root.problems.add(
+            "folder-name",
+            root.at(key),
+            f"the {key} '{root.get(key)}' stands in the folder {folder}",
+            hint=f"rename the folder to {root.get(key)}",
+        )
+
+
+def _drive(root: Node, drives: Mapping[str, Drive]) -> Drive | None:
+    name = root.get("drive")
+    if name is None:
+        return None
+    if name not in drives:
+        hint = suggestion(str(name), list(drives), "drives")
+        root.problems.add("name-unknown", root.at("drive"), f"there is no drive '{name}'", hint=hint)
+    return drives.get(name)
+
+
+def _slots(root: Node) -> list[Slot]:
+    found = []
+    for name, node in root.children("slots"):
+        runs = node.read("codes", references) or (RefRun(()),)
+        bounds = runs[0].open_run
+        first, last = (bounds[0], bounds[1]) if bounds else (CodeRef(0), CodeRef(0))
+        found.append(
+            Slot(
+                name=name,
+                first_code=first.number if isinstance(first, CodeRef) else 0,
+                last_code=last.number if isinstance(last, CodeRef) else 0,
+                code_offset=int(node.get("code_offset", 0)),
+                error_offset=int(node.get("error_offset", 0)),
+                chapter=optional_text(node, "chapter"),
+            )
+        )
+    return found
+
+
+def _canopen(root: Node) -> CanOpenFacts | None:
+    node = root.child("canopen")
+    if node is None:
+        return None
+    code = node.get("node_address")
+    return CanOpenFacts(
+        baud_rates=tuple(node.get("baud_rates")),
+        granularity=int(node.get("granularity")),
+        node_address=int(code[1:]) if code else None,
+        boot_up_master=bool(node.get("boot_up_master", False)),
+        cite=node.cite(),
+    )
+
+
+def _subjects(
+    files: Mapping[str, SourceFile], slots: tuple[Slot, ...]
+) -> tuple[list[CodeRef], list[ObjectRef], list[ErrorRef]]:
+    """What the ledger can name: codes and errors in every slot, objects."""
+    offsets = {slot.name: slot for slot in slots}
+    codes, objects, errors = [], [], []
+    if "codes" in files:
+        for node in files["codes"].root.items("codes"):
+            for name, _ in node.children("printed"):
+                offset = offsets[name].code_offset if name in offsets else 0
+                codes.append(CodeRef(int(str(node.get("code"))[1:]) + offset))
+    if "objects" in files:
+        for node in files["objects"].root.items("objects"):
+            first, last = object_run(node)
+            objects.extend(ObjectRef(index) for index in range(first, last + 1))
+    if "errors" in files:
+        for node in files["errors"].root.items("errors"):
+            value = node.get("number")
+            number = value if isinstance(value, int) else int(str(value).split()[0], 0)
+            for name in dict(node.children("printed")) or ("",):
+                offset = offsets[name].error_offset if name in offsets else 0
+                errors.append(ErrorRef(str(node.get("kind")), number + offset))
+    return codes, objects, errors

@@ -1,0 +1,115 @@
+"""Sources of facts, and what standards define."""
+
+from collections.abc import Mapping
+
+from generator.elaborate.common import OBJECT_TYPES, known_manual, optional_text, runs
+from generator.model import Chapter, CobId, Manual, ObjectRef, StandardObject, StandardSubIndex
+from generator.notation import references
+from generator.tree import Node, SourceFile
+
+
+def manual(file: SourceFile) -> Manual:
+    """A manual of spec/manuals."""
+    root = file.root
+    if root.get("id") != file.stem:
+        root.problems.add(
+            "folder-name",
+            root.at("id"),
+            f"the manual '{root.get('id')}' stands in {file.stem}.yaml",
+            hint=f"rename the file to {root.get('id')}.yaml",
+        )
+    seen: dict[str, Node] = {}
+    for node in root.items("chapters"):
+        number = str(node.get("chapter"))
+        if number in seen:
+            node.problems.add(
+                "duplicate", node.at("chapter"), f"chapter {number} stands twice", other=("first", seen[number].at("chapter"))
+            )
+        seen.setdefault(number, node)
+    return Manual(
+        id=str(root.get("id")),
+        title=str(root.get("title")),
+        publisher=str(root.get("publisher")),
+        edition=str(root.get("edition")),
+        date=optional_text(root, "date"),
+        document=optional_text(root, "document"),
+        kind=str(root.get("kind")),
+        url=optional_text(root, "url"),
+        pages=root.get("pages"),
+        chapters=tuple(
+            Chapter(
+                number=number,
+                title=str(node.get("title")),
+                page=node.get("page"),
+                status=node.get("status"),
+                note=optional_text(node, "note"),
+                where=node.where,
+            )
+            for number, node in seen.items()
+        ),
+        where=root.where,
+    )
+
+
+def standard(file: SourceFile, manuals: Mapping[str, Manual]) -> tuple[tuple[StandardObject, ...], tuple[CobId, ...]]:
+    """Objects and connection set that a standard defines."""
+    root = file.root
+    known_manual(file.manual, root, "manual", manuals)
+    objects = tuple(_object(node) for node in root.items("objects"))
+    cob_ids = tuple(
+        CobId(
+            name=str(node.get("name")),
+            base=int(node.get("base")),
+            objects=tuple(i for run in node.read("objects", references) or () for i in run.items if isinstance(i, ObjectRef)),
+            cite=node.cite(),
+        )
+        for node in root.items("cob_ids")
+    )
+    return objects, cob_ids
+
+
+def _object(node: Node) -> StandardObject:
+    first, last = object_run(node)
+    subs = node.child("subindexes")
+    return StandardObject(
+        first=first,
+        last=last,
+        name=str(node.get("name")),
+        object_type=str(node.get("object_type")),
+        category=str(node.get("category")),
+        subindexes=tuple(_subindexes(subs)) if subs else (),
+        cite=node.cite(),
+    )
+
+
+def _subindexes(subs: Node) -> list[StandardSubIndex]:
+    found = []
+    for key, low, high in runs(subs):
+        node = subs.child(key)
+        assert node is not None
+        found.append(
+            StandardSubIndex(
+                first=low,
+                last=high,
+                name=str(node.get("name")),
+                data_type=OBJECT_TYPES[str(node.get("type"))],
+                access=node.texts("access"),
+                pdo_mapping=bool(node.get("pdo_mapping", False)),
+                mandatory=bool(node.get("mandatory", False)),
+            )
+        )
+    return found
+
+
+def object_run(node: Node) -> tuple[int, int]:
+    """First and last index of an object entry ("I-1000", "I-1400 ... I-1403", "P-918")."""
+    found = node.read("index", references) or ()
+    for run in found:
+        if run.open_run is not None:
+            low, high = run.open_run
+            if isinstance(low, ObjectRef) and isinstance(high, ObjectRef) and low.index <= high.index:
+                return low.index, high.index
+            node.problems.add("run-order", node.at("index"), "the run does not ascend", hint="write the lower index first")
+        elif run.items and isinstance(run.items[0], ObjectRef):
+            return run.items[0].index, run.items[0].index
+    return 0, 0

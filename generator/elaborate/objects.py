@@ -1,0 +1,147 @@
+"""Objects: runs expanded, types and accesses of the standard taken where the standard defines them."""
+
+from collections.abc import Iterator, Sequence
+
+from generator.elaborate.codes import ErrataIndex
+from generator.elaborate.common import OBJECT_TYPES, bits, default, fields, fill, options, origin, runs
+from generator.elaborate.manuals import object_run
+from generator.model import (
+    Cite,
+    CodeRef,
+    DataType,
+    DictionaryObject,
+    ObjectRef,
+    Range,
+    StandardObject,
+    StandardSubIndex,
+    SubIndex,
+)
+from generator.notation import references, value_range
+from generator.tree import Node
+
+PROFIDRIVE = "P-"
+
+
+def objects(root: Node, standard: Sequence[StandardObject], errata: ErrataIndex) -> tuple[DictionaryObject, ...]:
+    """Objects of a device's objects.yaml, by index."""
+    found: dict[tuple[str, int], DictionaryObject] = {}
+    for node in root.items("objects"):
+        for entry in _expand(node, standard, errata):
+            key = (entry.kind, entry.index)
+            if key in found:
+                node.problems.add(
+                    "duplicate", node.at("index"), f"{entry.designation} is written twice", other=("first", found[key].where)
+                )
+            found.setdefault(key, entry)
+    return tuple(found[key] for key in sorted(found))
+
+
+def _expand(node: Node, standard: Sequence[StandardObject], errata: ErrataIndex) -> Iterator[DictionaryObject]:
+    first, last = object_run(node)
+    count = last - first + 1
+    for index in range(first, last + 1):
+        place = index - first
+        known = next((s for s in standard if s.first <= index <= s.last), None)
+        kind = "profidrive" if str(node.get("index")).startswith(PROFIDRIVE) else "canopen"
+        object_type = known.object_type if known and kind == "canopen" else node.get("object_type")
+        if object_type is None:
+            node.problems.add(
+                "standard-unknown",
+                node.at("index"),
+                f"{node.get('index')} is not an object of the standard",
+                hint="say its type: 'object_type: VAR'",
+            )
+            object_type = "VAR"
+        yield DictionaryObject(
+            kind=kind,
+            index=index,
+            name=fill(str(node.get("name")), node, "name", {"n": place + 1}),
+            object_type=str(object_type),
+            subindexes=tuple(_subindexes(node, ObjectRef(index), place, count, known if kind == "canopen" else None, errata)),
+            description=str(node.get("description", "")).strip(),
+            origin=origin(node),
+            cite=_cite(node, place, count),
+            errata=errata.of(ObjectRef(index)),
+            where=node.at("index"),
+        )
+
+
+def _cite(node: Node, place: int, count: int) -> Cite:
+    cites = node.get("cite")
+    if isinstance(cites, str):
+        return node.cite()
+    if not _fits(node, "cite", cites, count):
+        return node.file.cite(str(cites[0]), node.at("cite"))
+    return node.file.cite(str(cites[place]), node.at("cite"))
+
+
+def _fits(node: Node, key: str, values: Sequence[object], count: int) -> bool:
+    if len(values) == count:
+        return True
+    problem = f"'{key}' lists {len(values)} items for {count} objects"
+    if not any(d.where == node.at(key) and d.message == problem for d in node.problems.found):
+        node.problems.add("list-length", node.at(key), problem, hint="give one item for each object of the run")
+    return False
+
+
+def _subindexes(
+    node: Node, ref: ObjectRef, place: int, count: int, known: StandardObject | None, errata: ErrataIndex
+) -> Iterator[SubIndex]:
+    parent = node.child("subindexes")
+    assert parent is not None
+    for key, low, high in runs(parent):
+        child = parent.child(key)
+        assert child is not None
+        for number in range(low, high + 1):
+            yield _subindex(child, ObjectRef(ref.index, number), place, count, known, errata)
+
+
+def _subindex(
+    node: Node, ref: ObjectRef, place: int, count: int, known: StandardObject | None, errata: ErrataIndex
+) -> SubIndex:
+    assert ref.subindex is not None
+    values = {"n": place + 1, "k": ref.subindex}
+    printed_type = OBJECT_TYPES[str(node.get("type"))]
+    printed_access = str(node.get("access"))
+    norm = known.subindex(ref.subindex) if known else None
+    value = node.get("default")
+    if isinstance(value, list):
+        value = value[place] if _fits(node, "default", value, count) else None
+    return SubIndex(
+        number=ref.subindex,
+        name=fill(str(node.get("name")), node, "name", values),
+        data_type=norm.data_type if norm else printed_type,
+        access=_access(norm, printed_access),
+        printed_type=printed_type,
+        printed_access=printed_access,
+        default=default(node, "default", value, printed_type.is_number),
+        range=_range(node, norm.data_type if norm else printed_type),
+        options=options(node, "selection"),
+        bits=bits(node),
+        fields=fields(node),
+        codes=_codes(node, "codes", values),
+        detail_codes=_codes(node, "detail_codes", values),
+        signature=node.get("signature"),
+        pdo_mapping=bool(node.get("pdo_mapping", norm.pdo_mapping if norm else False)),
+        unused=bool(node.get("unused", False)),
+        abort=node.get("abort"),
+        description=str(node.get("description", "")).strip(),
+        errata=errata.of(ref),
+        where=node.where,
+    )
+
+
+def _access(norm: StandardSubIndex | None, printed: str) -> str:
+    return printed if norm is None or printed in norm.access else norm.access[0]
+
+
+def _range(node: Node, data_type: DataType) -> Range | None:
+    return node.read("range", value_range) if data_type.is_number else None
+
+
+def _codes(node: Node, key: str, values: dict[str, int]) -> tuple[CodeRef, ...]:
+    if key not in node:
+        return ()
+    text = fill(str(node.get(key)), node, key, dict(values))
+    found = node.read(key, references, text) or ()
+    return tuple(item for run in found for item in run.items if isinstance(item, CodeRef))

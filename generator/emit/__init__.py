@@ -1,0 +1,17 @@
+"""The targets, one module each; a target never sees YAML or checks."""
+
+from collections.abc import Iterator
+from importlib import import_module
+
+from generator.emit.base import Target
+
+NAMES = ("json",)
+"""Names of the targets: the module in this package, the folder in templates/ and the folder in generated/."""
+
+
+def targets() -> Iterator[Target]:
+    """Every target, in the order of ``NAMES``."""
+    for name in NAMES:
+        target = import_module(f"generator.emit.{name}").TARGET
+        assert isinstance(target, Target)
+        yield target

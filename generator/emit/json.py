@@ -1,0 +1,239 @@
+"""Target json: one document a device for other people's tools, and the schema that describes every key."""
+
+import json
+from collections.abc import Mapping, Sequence
+from fractions import Fraction
+
+from generator.emit.base import Output, Target
+from generator.emit.environment import TEMPLATES
+from generator.model import (
+    AttributeRow,
+    Bit,
+    BitField,
+    Cite,
+    Code,
+    Default,
+    Device,
+    DictionaryObject,
+    ErrorEntry,
+    Erratum,
+    Manual,
+    Model,
+    NodeRelative,
+    ObjectRef,
+    Option,
+    PrintedIndex,
+    Range,
+    SubIndex,
+)
+
+Json = Mapping[str, object]
+
+
+def render(model: Model) -> dict[str, Output]:
+    """One file a device and ``schema.json``."""
+    files = {f"{device.id}.json": _text(facts(model, device)) for device in model.devices}
+    files["schema.json"] = Output((TEMPLATES / "json" / "schema.json").read_text(encoding="utf-8"))
+    return files
+
+
+TARGET = Target("json", render)
+
+
+def _text(document: Json) -> Output:
+    return Output(json.dumps(document, indent=1, ensure_ascii=False) + "\n")
+
+
+def facts(model: Model, device: Device) -> Json:
+    """Everything that is known of a device, as the document that generated/json holds."""
+    return {
+        "device": device.id,
+        "title": device.title,
+        "manufacturer": device.manufacturer,
+        "order_code": device.order_code,
+        "bus": device.bus,
+        "manual": _manual(device.manual),
+        "version": model.version,
+        "date": model.date,
+        "slots": [slot.name for slot in device.slots],
+        "codes": [_code(code) for code in device.codes],
+        "objects": [_object(entry) for entry in device.objects],
+        "errors": [_error(error) for error in device.errors],
+        "errata": [_erratum(erratum) for erratum in device.errata],
+    }
+
+
+def _manual(manual: Manual) -> Json:
+    return {"id": manual.id, "title": manual.title, "edition": manual.edition, "date": manual.date}
+
+
+def _cite(cite: Cite) -> Json:
+    return {"manual": cite.manual, "chapter": cite.chapter, "page": cite.page}
+
+
+def _code(code: Code) -> Json:
+    return {
+        "code": code.designation,
+        "number": code.number,
+        "slot": code.slot,
+        "name": code.name,
+        "data_type": code.type_name,
+        "index": code.index,
+        "subcodes": code.highest_subcode or 1,
+        "subcode_names": {str(s.number): s.name for s in code.subcodes if s.name},
+        "access": {"read": code.access.read, "write": code.access.write, "cinh": "cinh" in code.access.conditions},
+        "conditions": list(code.access.conditions),
+        "scaling_factor": code.scaling,
+        "range": _range(code.range),
+        "defaults": _defaults(code),
+        "follows": {str(s.number): _default(s.follows) for s in code.subcodes if s.follows is not None},
+        "options": _options(code.options),
+        "subcode_options": {str(s.number): _options(s.options) for s in code.subcodes if s.options},
+        "bits": _bits(code.bits),
+        "fields": _fields(code.fields),
+        "internal": code.internal,
+        "since": code.since,
+        "objects": [_object_key(ref) for ref in code.objects],
+        "shared_by": code.shared_by,
+        "origin": code.origin.value,
+        "printed": {
+            **{p.place: _printed(p) for p in code.printed},
+            **({"name": code.printed_name} if code.printed_name != code.name else {}),
+            **({"attributes": _attributes(code.attributes)} if code.attributes else {}),
+        },
+        "description": code.description,
+        "cite": _cite(code.cite),
+        "default_cite": _cite(code.default_cite) if code.default_cite else None,
+        "errata": list(code.errata),
+    }
+
+
+def _defaults(code: Code) -> Json:
+    if code.subcodes:
+        return {str(s.number): _default(s.default) for s in code.subcodes if s.default is not None}
+    return {} if code.default is None else {"0": _default(code.default)}
+
+
+def _default(value: Default | None) -> int | str | None:
+    return f"$NODEID+0x{value.base:X}" if isinstance(value, NodeRelative) else value
+
+
+def _range(limits: Range | None) -> Json | None:
+    if limits is None:
+        return None
+    return {"min": _number(limits.low), "max": _number(limits.high), "unit": limits.unit or None}
+
+
+def _number(value: Fraction) -> int | float:
+    return value.numerator if value.denominator == 1 else float(value)
+
+
+def _options(options: Sequence[Option]) -> Json:
+    return {str(option.value): option.label for option in options}
+
+
+def _bits(bits: Sequence[Bit]) -> Json:
+    return {str(bit.number): bit.label for bit in bits}
+
+
+def _fields(fields: Sequence[BitField]) -> list[Json]:
+    return [{"low": f.low, "high": f.high, "name": f.label} for f in fields]
+
+
+def _object_key(ref: ObjectRef) -> str:
+    return f"{ref.index:04X}" + (f":{ref.subindex:02X}" if ref.subindex is not None else "")
+
+
+def _printed(printed: PrintedIndex) -> Json:
+    return {"decimal": printed.decimal, "hexadecimal": printed.hexadecimal, "page": printed.page}
+
+
+def _attributes(row: AttributeRow) -> Json:
+    return {
+        "structure": row.structure,
+        "count": row.count,
+        "data_type": row.type_name,
+        "factor": row.factor,
+        "access": row.access,
+        "name": row.name,
+    }
+
+
+def _object(entry: DictionaryObject) -> Json:
+    return {
+        "index": entry.index,
+        "name": entry.name,
+        "object_type": entry.object_type,
+        "kind": entry.kind,
+        "description": entry.description,
+        "subindexes": [_subindex(sub) for sub in entry.subindexes],
+        "origin": entry.origin.value,
+        "cite": _cite(entry.cite),
+        "errata": list(entry.errata),
+    }
+
+
+def _subindex(sub: SubIndex) -> Json:
+    return {
+        "subindex": sub.number,
+        "name": sub.name,
+        "data_type": sub.data_type.canopen_name,
+        "access": sub.access,
+        "printed": {"data_type": sub.printed_type.canopen_name, "access": sub.printed_access},
+        "default": _default(sub.default),
+        "min": _number(sub.range.low) if sub.range else None,
+        "max": _number(sub.range.high) if sub.range else None,
+        "unit": (sub.range.unit or None) if sub.range else None,
+        "options": _options(sub.options),
+        "bits": _bits(sub.bits),
+        "fields": _fields(sub.fields),
+        "codes": [str(ref) for ref in sub.codes],
+        "signature": sub.signature,
+        "pdo_mapping": sub.pdo_mapping,
+        "unused": sub.unused,
+        "abort": sub.abort,
+        "description": sub.description,
+        "errata": list(sub.errata),
+    }
+
+
+def _error(error: ErrorEntry) -> Json:
+    return {
+        "kind": error.kind,
+        "number": error.number,
+        "last": error.last if error.count > 1 else None,
+        "slot": error.slot,
+        "name": error.name,
+        "response": error.response,
+        "responses": list(error.responses),
+        "adjustable_in": [str(ref) for ref in error.adjustable_in],
+        "causes": list(error.causes),
+        "remedies": list(error.remedies),
+        "description": error.description,
+        "printed": {
+            p.place: {"first": p.first, "last": p.last, "page": p.page} for p in error.printed
+        },
+        "origin": error.origin.value,
+        "cite": _cite(error.cite),
+        "errata": list(error.errata),
+    }
+
+
+def _erratum(erratum: Erratum) -> Json:
+    places: list[Json] = [
+        {"where": p.location, "page": p.page, "manual": p.manual, "printed": p.printed} for p in erratum.places
+    ]
+    if not places:
+        where = " ".join(erratum.place)
+        places = [{"where": where, "page": None, "manual": None, "printed": erratum.printed_text}]
+    return {
+        "id": erratum.id,
+        "kind": erratum.kind,
+        "rule": erratum.rule,
+        "about": list(erratum.about_text),
+        "places": places,
+        "used": erratum.used_text,
+        "why": erratum.why,
+        "confidence": erratum.confidence,
+        "origin": erratum.origin,
+    }

@@ -1,0 +1,55 @@
+"""The target-free model of a device: frozen, slotted, exact.
+
+Nothing here knows YAML, schemas, diagnostics or targets.  An object that exists is complete: the stage
+that builds it (``generator.elaborate``) has resolved every reference, run and slot.  All numbers are
+``int`` or ``fractions.Fraction``; floats do not occur.
+"""
+
+from generator.model.citation import Chapter, Cite, Manual, Origin, Where
+from generator.model.code import Access, AttributeRow, Code, PrintedIndex, SubCode
+from generator.model.device import CanOpenFacts, Device, Drive, DriveCommand, DriveModule, Model, Response, Slot
+from generator.model.error import ErrorEntry, PrintedNumber
+from generator.model.erratum import Erratum, ErratumPlace
+from generator.model.objects import CobId, DictionaryObject, StandardObject, StandardSubIndex, SubIndex
+from generator.model.reference import CodeRef, ErrorRef, ObjectRef
+from generator.model.values import Bit, BitField, DataType, Default, NodeRelative, Option, Range
+
+__all__ = [
+    "Access",
+    "AttributeRow",
+    "Bit",
+    "BitField",
+    "CanOpenFacts",
+    "Chapter",
+    "Cite",
+    "CobId",
+    "Code",
+    "CodeRef",
+    "DataType",
+    "Default",
+    "Device",
+    "DictionaryObject",
+    "Drive",
+    "DriveCommand",
+    "DriveModule",
+    "ErrorEntry",
+    "ErrorRef",
+    "Erratum",
+    "ErratumPlace",
+    "Manual",
+    "Model",
+    "NodeRelative",
+    "ObjectRef",
+    "Option",
+    "Origin",
+    "PrintedIndex",
+    "PrintedNumber",
+    "Range",
+    "Response",
+    "Slot",
+    "StandardObject",
+    "StandardSubIndex",
+    "SubCode",
+    "SubIndex",
+    "Where",
+]

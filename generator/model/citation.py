@@ -1,0 +1,67 @@
+"""Where a fact comes from: the source text (manual, chapter, page) and the line of spec that holds it."""
+
+from dataclasses import dataclass
+from enum import Enum
+
+
+class Origin(Enum):
+    """How a fact came to be known."""
+
+    MANUAL = "manual"
+    """Printed in the manual that the entry cites."""
+    STANDARD = "standard"
+    """Taken from a public standard such as CiA 301."""
+    DERIVED = "derived"
+    """Calculated from printed facts."""
+    ASSUMED = "assumed"
+    """Documented nowhere; a marked assumption."""
+    PUBLIC = "public"
+    """Printed in another public document."""
+
+
+@dataclass(frozen=True, slots=True)
+class Where:
+    """Place in a source file; line and column count from 1, ``path`` is the way of keys that leads there."""
+
+    file: str
+    line: int
+    column: int
+    path: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Cite:
+    """Place in a manual: id of the manual, chapter as text, page as printed (``None`` where unknown)."""
+
+    manual: str
+    chapter: str
+    page: int | None = None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Chapter:
+    """A chapter of a manual and what became of it (``status`` as in ``manual.schema.yaml``)."""
+
+    number: str
+    title: str
+    page: int | None
+    status: str | None
+    note: str | None
+    where: Where
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Manual:
+    """A source of facts; ``kind`` is "manual", "standard" or "public", ``date`` "yyyy-mm" as printed."""
+
+    id: str
+    title: str
+    publisher: str
+    edition: str
+    date: str | None
+    document: str | None
+    kind: str
+    url: str | None
+    pages: int | None
+    chapters: tuple[Chapter, ...]
+    where: Where

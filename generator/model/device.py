@@ -1,0 +1,130 @@
+"""Devices, base drives and the whole model."""
+
+from dataclasses import dataclass
+
+from generator.model.citation import Cite, Manual, Origin, Where
+from generator.model.code import Code
+from generator.model.error import ErrorEntry
+from generator.model.erratum import Erratum
+from generator.model.objects import CobId, DictionaryObject, StandardObject
+from generator.model.values import BitField
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Slot:
+    """A module slot: run of its codes and what is added to the numbers of the first slot.
+
+    ``chapter``: where the manual describes the codes of this slot, ``None`` where the entries cite it themselves.
+    """
+
+    name: str
+    first_code: int
+    last_code: int
+    code_offset: int
+    error_offset: int
+    chapter: str | None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Response:
+    """A response to an error; ``value`` stands in the response field of an error number and in selection lists."""
+
+    value: int
+    name: str
+    aliases: tuple[str, ...]
+    origin: Origin
+    cite: Cite
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class DriveModule:
+    """A value of the module field of an error number."""
+
+    value: int
+    name: str
+    origin: Origin
+    cite: Cite
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class DriveCommand:
+    """A device command: the value that is written to code C00002."""
+
+    value: int
+    name: str
+    origin: Origin
+    cite: Cite
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Drive:
+    """A base drive: ``index_base`` - code number = index of a code."""
+
+    id: str
+    title: str
+    manufacturer: str
+    index_base: int
+    index_base_cites: tuple[Cite, ...]
+    responses: tuple[Response, ...]
+    error_fields: tuple[tuple[str, BitField], ...]
+    error_fields_origin: Origin
+    error_fields_cite: Cite
+    modules: tuple[DriveModule, ...]
+    commands: tuple[DriveCommand, ...]
+    where: Where
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CanOpenFacts:
+    """What [DeviceInfo] of an EDS needs and no object says: bit rates in kbit/s, granularity in bits, number of
+    the code that holds the node address."""
+
+    baud_rates: tuple[int, ...]
+    granularity: int
+    node_address: int | None
+    boot_up_master: bool
+    cite: Cite
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Device:
+    """A device with everything that its manual says, both slots expanded.
+
+    ``attributes``: where the table of attributes stands.  ``codes`` ascend by number, ``objects`` by index; ``errors`` stand in the order of kind and number.
+    """
+
+    id: str
+    title: str
+    manufacturer: str
+    order_code: str
+    manual: Manual
+    bus: str
+    drive: Drive | None
+    hardware_version: str | None
+    software_version: str | None
+    cite: Cite
+    slots: tuple[Slot, ...]
+    canopen: CanOpenFacts | None
+    attributes: Cite | None
+    codes: tuple[Code, ...]
+    objects: tuple[DictionaryObject, ...]
+    errors: tuple[ErrorEntry, ...]
+    errata: tuple[Erratum, ...]
+    where: Where
+
+    def codes_of_slot(self, slot: str | None) -> tuple[Code, ...]:
+        """Codes that a master sees with the module in ``slot``: those of the base drive and of the slot."""
+        return tuple(c for c in self.codes if c.slot is None or c.slot == slot)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Model:
+    """Everything: ``release`` is (version, "yyyy-mm-dd") of the spec, the only date that artifacts carry."""
+
+    version: str
+    date: str
+    devices: tuple[Device, ...]
+    drives: tuple[Drive, ...]
+    manuals: tuple[Manual, ...]
+    standard_objects: tuple[StandardObject, ...]
+    cob_ids: tuple[CobId, ...]

@@ -1,0 +1,238 @@
+"""The compact notations of the manuals, one Lark grammar each, read into plain values.
+
+Every function raises ``NotationError`` with the column (from 0) where the text stops making sense.
+"""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import cache, lru_cache
+from pathlib import Path
+from typing import Any
+
+from lark import Lark, Token, Tree
+from lark.exceptions import UnexpectedInput
+
+from generator.model import CodeRef, ErrorRef, NodeRelative, ObjectRef, Range
+
+_FOLDER = Path(__file__).resolve().parent
+
+
+class NotationError(Exception):
+    """A text that is not of the notation; ``column`` counts from 0, ``example`` shows a text that is."""
+
+    def __init__(self, message: str, column: int, example: str) -> None:
+        """Keep the parts."""
+        super().__init__(message)
+        self.message = message
+        self.column = column
+        self.example = example
+
+
+_EXAMPLES = {
+    "references": "C13372/2...10",
+    "range": "0 ... 65535 ms",
+    "numbers": "0x009e0000 ... 0x009e001f",
+    "node": "$NODEID + 0x180",
+    "citation": "13.2 p. 107",
+    "attributes": "24264 / 5EC8 | A 8 BITFIELD_8 | 1 | RW",
+    "formula": "25575 - code",
+}
+
+
+@cache
+def _parser(name: str) -> Lark:
+    return Lark.open(str(_FOLDER / f"{name}.lark"), parser="lalr", maybe_placeholders=True)
+
+
+@lru_cache(maxsize=4096)
+def _parse(name: str, text: str) -> Tree[Token]:
+    try:
+        return _parser(name).parse(text)
+    except UnexpectedInput as error:
+        column = error.column - 1 if isinstance(error.column, int) and error.column > 0 else len(text)
+        message = f"'{text}' is not written as in '{_EXAMPLES[name]}'"
+        raise NotationError(message, min(column, len(text)), _EXAMPLES[name]) from None
+
+
+def _integer(token: str) -> int:
+    return int(token, 16) if token.startswith("0x") else int(token)
+
+
+@dataclass(frozen=True, slots=True)
+class RefRun:
+    """References that belong together: a single one, or every one of a run.
+
+    ``open_run`` is (first, last) where a run names its ends alone ("C14311 ... C14625"); which codes, objects or
+    errors lie between them is for the reader to say.
+    """
+
+    items: tuple[CodeRef | ObjectRef | ErrorRef | str, ...]
+    open_run: tuple[CodeRef, CodeRef] | tuple[ObjectRef, ObjectRef] | tuple[ErrorRef, ErrorRef] | None = None
+
+
+def references(text: str) -> tuple[RefRun, ...]:
+    """References in the order written.
+
+    A run of subcodes is expanded ("C13372/2...10"); so is a run of objects with sub-index ("I-1800/1 ... I-1803/1");
+    a run of codes is left open, for codes have gaps.
+    """
+    return tuple(_reference(child) for child in _parse("references", text).children if isinstance(child, Tree))
+
+
+def _reference(tree: Tree[Token]) -> RefRun:
+    parts = [str(t) if t is not None else None for t in tree.children if t is None or t.type != "DOTS"]
+    match tree.data:
+        case "code":
+            number = int(str(parts[0])[1:])
+            if parts[1] is None:
+                return RefRun((CodeRef(number),))
+            first = int(parts[1])
+            last = int(str(parts[-1])) if parts[-1] is not None else first
+            return RefRun(tuple(CodeRef(number, k) for k in range(first, last + 1)))
+        case "code_run":
+            a, b = (CodeRef(int(str(parts[i])[1:]), None if parts[i + 1] is None else int(str(parts[i + 1]))) for i in (0, 2))
+            return RefRun((), (a, b))
+        case "object":
+            index = _object_index(str(parts[0]))
+            if parts[1] is None:
+                return RefRun((ObjectRef(index),))
+            first = int(parts[1])
+            last = int(str(parts[-1])) if parts[-1] is not None else first
+            return RefRun(tuple(ObjectRef(index, k) for k in range(first, last + 1)))
+        case "object_run":
+            low, high = _object_index(str(parts[0])), _object_index(str(parts[2]))
+            sub = None if parts[1] is None else int(str(parts[1]))
+            if sub is None:
+                return RefRun((), (ObjectRef(low), ObjectRef(high)))
+            return RefRun(tuple(ObjectRef(i, sub) for i in range(low, high + 1)))
+        case "error":
+            return RefRun((ErrorRef("", int(str(parts[0])[2:], 16)),))
+        case "error_run":
+            return RefRun((), tuple(ErrorRef("", int(str(parts[i])[2:], 16)) for i in (0, 1)))  # type: ignore[arg-type]
+        case _:
+            return RefRun((str(parts[0]),))
+
+
+def _object_index(text: str) -> int:
+    return int(text[2:], 16) if text.startswith("I-") else int(text[2:])
+
+
+def value_range(text: str) -> Range:
+    """A range with its unit; both ends exact."""
+    tree = _parse("range", text)
+    low, high = (_fraction(str(t.children[0])) for t in tree.children if isinstance(t, Tree))
+    unit = tree.children[-1]
+    return Range(low, high, str(unit).strip() if isinstance(unit, Token) and unit.type == "UNIT" else "")
+
+
+def _fraction(text: str) -> Fraction:
+    return Fraction(int(text, 16)) if text.startswith("0x") else Fraction(text)
+
+
+@dataclass(frozen=True, slots=True)
+class NumberRun:
+    """A printed number, or the first and last of a run, read in base 16 or 10."""
+
+    first: int
+    last: int | None
+    base: int
+
+
+def numbers(text: str, bases: tuple[int, int] = (16, 10)) -> tuple[NumberRun, ...]:
+    """One printed form or two, parted by a slash; digits without 0x are read in the base of their place.
+
+    >>> numbers("11264 / 2C00", (10, 16))
+    (NumberRun(first=11264, last=None, base=10), NumberRun(first=11264, last=None, base=16))
+    """
+    runs = [c for c in _parse("numbers", text).children if isinstance(c, Tree)]
+    return tuple(_number_run(text, run, base) for run, base in zip(runs, bases, strict=False))
+
+
+def _number_run(text: str, run: Tree[Token], base: int) -> NumberRun:
+    values = []
+    for number in run.children:
+        if not isinstance(number, Tree):
+            continue
+        token = number.children[0]
+        assert isinstance(token, Token)
+        digits = str(token).replace(" ", "")
+        actual = 16 if digits.startswith("0x") else base
+        try:
+            values.append((int(digits, actual), actual))
+        except ValueError:
+            raise NotationError(f"'{digits}' is not a decimal number", token.column - 1 if token.column else 0, text) from None
+    return NumberRun(values[0][0], values[1][0] if len(values) > 1 else None, values[0][1])
+
+
+def node_relative(text: str) -> NodeRelative:
+    """A value that follows the node address."""
+    token = _parse("node", text).children[-1]
+    return NodeRelative(_integer(str(token)))
+
+
+def citation(text: str) -> tuple[str | None, str, int | None]:
+    """Manual (``None`` where the file's own is meant), chapter, page."""
+    manual, chapter, _, page = _parse("citation", text).children
+    return (
+        str(manual).strip() if manual is not None else None,
+        str(chapter),
+        int(str(page)) if page is not None else None,
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class Attributes:
+    """A row of the table of attributes."""
+
+    decimal: int
+    hexadecimal: int
+    structure: str
+    count: int
+    type_name: str
+    factor: int
+    access: str
+
+
+def attributes(text: str) -> Attributes:
+    """A row of the table of attributes."""
+    found: dict[str, list[str]] = {}
+    for token in _parse("attributes", text).children:
+        if isinstance(token, Token):
+            found.setdefault(token.type, []).append(str(token))
+    decimal, hexadecimal = found["INDEX"]
+    if not decimal.isdigit():
+        raise NotationError(f"'{decimal}' is not a decimal number", 0, _EXAMPLES["attributes"])
+    count, factor = found["INT"]
+    return Attributes(
+        int(decimal), int(hexadecimal, 16), found["STRUCTURE"][0], int(count), found["TYPE"][0], int(factor), found["ACCESS"][0]
+    )
+
+
+Formula = Callable[[Mapping[str, int]], int]
+"""Value of a formula for given values of its variables; ``KeyError`` names a variable that is missing."""
+
+
+def formula(text: str) -> Formula:
+    """A formula over whole numbers; ``mod`` is never negative for a positive divisor."""
+    return _compile(_parse("formula", text))
+
+
+_OPERATIONS: Mapping[str, Callable[[int, int], int]] = {
+    "add": lambda a, b: a + b,
+    "sub": lambda a, b: a - b,
+    "mul": lambda a, b: a * b,
+    "mod": lambda a, b: a % b,
+}
+
+
+def _compile(tree: Any) -> Formula:
+    if tree.data == "number":
+        constant = _integer(str(tree.children[0]))
+        return lambda _: constant
+    if tree.data == "variable":
+        name = str(tree.children[0])
+        return lambda values: values[name]
+    operation = _OPERATIONS[str(tree.data)]
+    left, right = (_compile(child) for child in tree.children)
+    return lambda values: operation(left(values), right(values))

@@ -1,0 +1,52 @@
+"""The stages in order, with a barrier after each."""
+
+from pathlib import Path
+
+from generator.check import check
+from generator.diagnostics import Diagnostic, DiagnosticsError, Problems
+from generator.elaborate import elaborate
+from generator.emit import targets
+from generator.emit.base import EmitError
+from generator.model import Model
+from generator.spec import load
+
+
+def compile_model(folder: Path, label: str) -> Model:
+    """The checked model of a spec folder; ``label`` is its name in messages.
+
+    Raises:
+        DiagnosticsError: All problems of the first stage that had any.
+    """
+    problems = Problems()
+    model = elaborate(load(folder, label, problems), problems)
+    check(model, problems)
+    return model
+
+
+def render(model: Model) -> dict[str, bytes]:
+    """Every artifact of every target, by path below generated/.
+
+    Raises:
+        DiagnosticsError: A target cannot express a fact; one problem of each target that failed.
+    """
+    files: dict[str, bytes] = {}
+    problems: list[Diagnostic] = []
+    for target in targets():
+        try:
+            for path, output in target.render(model).items():
+                files[f"{target.name}/{path}"] = output.data()
+        except EmitError as error:
+            problems.append(_diagnostic(error))
+    if problems:
+        raise DiagnosticsError(problems)
+    return files
+
+
+def _diagnostic(error: EmitError) -> Diagnostic:
+    return Diagnostic(
+        rule=error.rule,
+        where=error.where,
+        message=error.message,
+        hint=error.hint,
+        other=("other entry", error.other) if error.other else None,
+    )
