@@ -52,9 +52,13 @@ def _parser() -> argparse.ArgumentParser:
     common.add_argument("--spec", type=Path, default=_ROOT / "spec", help="folder of the spec (default: spec)")
     common.add_argument("--format", choices=("text", "json"), default="text", help="form of the diagnostics")
     build = commands.add_parser("build", parents=[common], help="check the spec and write every artifact")
-    build.add_argument("--out", type=Path, default=_ROOT / "generated", help="folder of the artifacts (default: generated)")
+    build.add_argument(
+        "--out", type=Path, default=_ROOT / "generated", help="folder of the artifacts (default: generated)"
+    )
     commands.add_parser("check", parents=[common], help="check the spec and write nothing")
-    commands.add_parser("census", parents=[common], help="print every fact, one a line, and the coverage of each manual")
+    commands.add_parser(
+        "census", parents=[common], help="print every fact, one a line, and the coverage of each manual"
+    )
     explain = commands.add_parser("explain", help="say what a rule demands")
     explain.add_argument("rule", nargs="?", help="id of the rule, as in error[RULE]; without it all rules are listed")
     return parser
@@ -70,7 +74,9 @@ def _label(spec: Path) -> str:
 
 def _build(spec: Path, out: Path, style: str) -> int:
     sources = _digests(spec)
-    state = digest(json.dumps([VERSION, _digests(_ROOT / "generator"), _digests(_ROOT / "templates"), sources]).encode())
+    state = digest(
+        json.dumps([VERSION, _digests(_ROOT / "generator"), _digests(_ROOT / "templates"), sources]).encode()
+    )
     if _state(out) == state and is_current(out):
         print(f"{out.name}: up to date")
         return 0
@@ -134,7 +140,9 @@ def _show(error: Exception, spec: Path, style: str) -> int:
     root = spec.resolve()
     for _ in Path(_label(spec)).parts:
         root = root.parent
-    sys.stderr.write(as_text(error.diagnostics, SourceText(root if not Path(_label(spec)).is_absolute() else Path("/"))))
+    sys.stderr.write(
+        as_text(error.diagnostics, SourceText(root if not Path(_label(spec)).is_absolute() else Path("/")))
+    )
     count = len(error.diagnostics)
     sys.stderr.write(f"\n{count} problem{'s' if count > 1 else ''}; nothing was written\n")
     return 1

@@ -48,7 +48,7 @@ class DiagnosticsError(Exception):
     def __init__(self, diagnostics: Sequence[Diagnostic]) -> None:
         """Keep the problems in the order of their places."""
         super().__init__(f"{len(diagnostics)} problems")
-        self.diagnostics = tuple(sorted(diagnostics, key=lambda d: d.order))
+        self.diagnostics = tuple(sorted(dict.fromkeys(diagnostics), key=lambda d: d.order))
 
 
 @dataclass(slots=True)

@@ -1,11 +1,11 @@
 """Validation against the JSON Schemas of spec/schema, with every violation at its place."""
 
+import re
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 from jsonschema import Draft202012Validator
-from jsonschema.exceptions import ValidationError
 from referencing import Registry, Resource
 from referencing.jsonschema import DRAFT202012
 
@@ -37,9 +37,7 @@ class Schemas:
             for data in documents.values()
         )
         self._validators = {
-            kind: Draft202012Validator(data, registry=registry)
-            for kind, data in documents.items()
-            if "type" in data
+            kind: Draft202012Validator(data, registry=registry) for kind, data in documents.items() if "type" in data
         }
 
     @property
@@ -53,7 +51,7 @@ class Schemas:
             _report(error, data, name, problems)
 
 
-def _report(error: ValidationError, data: Map, name: str, problems: Problems) -> None:
+def _report(error: Any, data: Map, name: str, problems: Problems) -> None:
     if error.validator in ("oneOf", "anyOf") and error.context:
         deepest = max(len(e.absolute_path) for e in error.context)
         inner = [e for e in error.context if len(e.absolute_path) == deepest]
@@ -89,11 +87,9 @@ def _report(error: ValidationError, data: Map, name: str, problems: Problems) ->
     problems.add("schema", where, error.message, hint=str(error.schema.get("description", "")))
 
 
-def _report_unknown_keys(error: ValidationError, data: Map, name: str, problems: Problems) -> None:
-    import re
-
+def _report_unknown_keys(error: Any, data: Map, name: str, problems: Problems) -> None:
     patterns = [re.compile(p) for p in error.schema.get("patternProperties", {})]
-    legal = list(error.schema.get("properties", {}))
+    legal: list[str] = list(error.schema.get("properties", {}))
     path = _path(error)
     for key in error.instance:
         if key in legal or any(p.search(key) for p in patterns):
@@ -103,7 +99,7 @@ def _report_unknown_keys(error: ValidationError, data: Map, name: str, problems:
         problems.add("key-unknown", Where(name, line, column, path), f"'{key}' is not a key here", hint=hint)
 
 
-def _expected(error: ValidationError) -> str:
+def _expected(error: Any) -> str:
     if error.validator == "type":
         kinds = error.validator_value if isinstance(error.validator_value, Sequence) else [error.validator_value]
         kinds = [error.validator_value] if isinstance(error.validator_value, str) else kinds
@@ -114,7 +110,7 @@ def _expected(error: ValidationError) -> str:
         return str(error.validator_value)
     if error.validator == "pattern":
         return f"text of the form {error.validator_value}"
-    return error.message
+    return str(error.message)
 
 
 def _found(instance: Any) -> str:
@@ -127,7 +123,7 @@ def _found(instance: Any) -> str:
     return "a mapping" if isinstance(instance, Mapping) else "a list"
 
 
-def _retype_hint(error: ValidationError) -> str:
+def _retype_hint(error: Any) -> str:
     expected = error.validator_value
     if error.validator == "enum":
         return suggestion(str(error.instance), [str(v) for v in expected], "values")
@@ -143,11 +139,11 @@ def _describe(schema: Any, key: str) -> str:
     return f" ({description})" if description else ""
 
 
-def _path(error: ValidationError) -> str:
+def _path(error: Any) -> str:
     return "/" + "/".join(str(p) for p in error.absolute_path)
 
 
-def _where(error: ValidationError, data: Map, name: str) -> Where:
+def _where(error: Any, data: Map, name: str) -> Where:
     line, column = 1, 1
     node: Any = data
     for step in error.absolute_path:

@@ -9,7 +9,17 @@ from generator.model import Where
 from generator.schema import Schemas
 from generator.tree import SourceFile
 
-_DEVICE_KINDS = ("device", "codes", "objects", "errors", "errata")
+_DEVICE_KINDS = (
+    "device",
+    "codes",
+    "objects",
+    "errors",
+    "indicators",
+    "switches",
+    "tables",
+    "telegrams",
+    "errata",
+)
 _DRIVE_KINDS = ("drive", "codes")
 
 
@@ -26,7 +36,7 @@ class Spec:
 
 def inputs(folder: Path) -> list[Path]:
     """Every YAML file of a spec folder, schemas included, in order."""
-    return sorted(path for path in folder.rglob("*.yaml") if path.is_file())
+    return sorted(folder.rglob("*.yaml"))
 
 
 def load(folder: Path, label: str, problems: Problems) -> Spec:

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Iterator
 
-from generator.check import citations, codes, errors, objects
+from generator.check import citations, codes, errors, objects, telegrams
 from generator.check.finding import Finding
 from generator.check.ledger import settle
 from generator.diagnostics import Problems
@@ -27,6 +27,11 @@ RULES: tuple[Callable[[Model, Device], Iterator[Finding]], ...] = (
     errors.names,
     errors.responses,
     errors.adjustable_codes,
+    telegrams.examples,
+    telegrams.identifiers,
+    telegrams.formulas,
+    telegrams.switches,
+    telegrams.patterns,
 )
 """Every check: a function from a device to the disagreements that it sees."""
 

@@ -1,9 +1,28 @@
 """Citations: the chapter exists and the page is one of it."""
 
 from collections.abc import Iterator
+from typing import Protocol
 
 from generator.diagnostics import Problems, suggestion
 from generator.model import Cite, Manual, Model, Where
+
+
+class Cited(Protocol):
+    """Something with a citation."""
+
+    @property
+    def cite(self) -> Cite:
+        """Where the manual says it."""
+        ...
+
+
+class Placed(Cited, Protocol):
+    """Something with a citation and a place in spec."""
+
+    @property
+    def where(self) -> Where:
+        """Where spec says it."""
+        ...
 
 
 def check(model: Model, problems: Problems) -> None:
@@ -20,12 +39,15 @@ def check(model: Model, problems: Problems) -> None:
 
 def _citations(model: Model) -> Iterator[tuple[Cite, Where]]:
     for drive in model.drives:
-        named = (*drive.responses, *drive.modules, *drive.commands)
+        named: list[Cited] = [*drive.responses, *drive.modules, *drive.commands]
         for cite in (*drive.index_base_cites, drive.error_fields_cite, *(n.cite for n in named)):
             yield cite, drive.where
     for device in model.devices:
         yield device.cite, device.where
-        for entry in (*device.codes, *device.objects, *device.errors):
+        entries: list[Placed] = [*device.codes, *device.objects, *device.errors, *device.indicators, *device.switches]
+        entries += [*device.tables, *device.formulas, *device.layouts, *device.examples]
+        entries += [row for table in device.indicators for row in table.rows]
+        for entry in entries:
             yield entry.cite, entry.where
         for code in device.codes:
             if code.default_cite is not None:

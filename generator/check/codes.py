@@ -11,14 +11,14 @@ def printed_indexes(model: Model, device: Device) -> Iterator[Finding]:
     for code in device.codes:
         for printed in code.printed:
             for form, value in (("decimal", printed.decimal), ("hexadecimal", printed.hexadecimal)):
-                if value is not None and value != code.index:
+                if value is not None:
                     yield Finding(
                         rule="code-index",
                         subject=code.ref,
                         place=f"{printed.place} {form}",
                         printed=value,
                         expected=code.index,
-                        message=f"{code.designation} has the index {code.index} (0x{code.index:X}), not {_as(form, value)}",
+                        message=f"{code.designation} has index {code.index} (0x{code.index:X}), not {_as(form, value)}",
                         where=printed.where,
                         variables={"code": code.number, "index": code.index},
                     )

@@ -17,17 +17,17 @@ def numbers(model: Model, device: Device) -> Iterator[Finding]:
                 ("last", printed.last, last),
             )
             for end, value, expected in ends:
-                if value != expected:
-                    yield Finding(
-                        rule="error-number",
-                        subject=error.ref,
-                        place=f"{printed.place} {end}",
-                        printed="none" if value is None else value,
-                        expected="none" if expected is None else expected,
-                        message=f"{error.ref}: the {printed.place} form prints {_show(value, printed.base)} as {end} number",
-                        where=printed.where,
-                        variables={"number": error.number},
-                    )
+                form = "hexadecimal" if printed.base == 16 else "decimal"
+                yield Finding(
+                    rule="error-number",
+                    subject=error.ref,
+                    place=f"{printed.place} {end} {form}",
+                    printed="none" if value is None else value,
+                    expected="none" if expected is None else expected,
+                    message=f"{error.ref}: {printed.place} prints {_show(value, printed.base)} as {end} number",
+                    where=printed.where,
+                    variables={"number": error.number},
+                )
 
 
 def _show(value: int | None, base: int) -> str:
@@ -65,7 +65,9 @@ def responses(model: Model, device: Device) -> Iterator[Finding]:
         preset = values[error.response]
         selectable = {values[name] for name in error.responses}
         if selectable and preset not in selectable:
-            yield _response(error, "responses", error.response, f"the preset response '{error.response}' cannot be selected")
+            yield _response(
+                error, "responses", error.response, f"the preset response '{error.response}' cannot be selected"
+            )
         for ref in error.adjustable_in:
             code = codes.get(ref.number)
             if code is None:
@@ -73,7 +75,9 @@ def responses(model: Model, device: Device) -> Iterator[Finding]:
             sub = next((s for s in code.subcodes if s.number == ref.subcode), None)
             value = sub.default if sub else code.default
             if isinstance(value, int) and value != preset and (sub is None) == (not code.subcodes):
-                yield _response(error, f"code {ref}", error.response, f"{ref} has the Lenze setting {value}, not {error.response}")
+                yield _response(
+                    error, f"code {ref}", error.response, f"{ref} has the Lenze setting {value}, not {error.response}"
+                )
             listed = {option.value for option in code.options}
             for name in error.responses:
                 if listed and values[name] not in listed:

@@ -1,11 +1,11 @@
 """The ledger: every disagreement is explained by one entry, and every entry explains one."""
 
 import re
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 
 from generator.check.finding import Finding
 from generator.diagnostics import Problems
-from generator.model import CodeRef, Device, ErrorRef, Erratum, ObjectRef
+from generator.model import CodeRef, Device, Erratum, ObjectRef
 from generator.model.erratum import Subject
 
 ELLIPSIS = "..."
@@ -29,6 +29,11 @@ def _settle_one(
     finding: Finding, candidates: Sequence[Erratum], explained: dict[tuple[str, Subject], int], problems: Problems
 ) -> None:
     matching = [e for e in candidates if finding.subject in e.about and _is_prefix(e.place, finding.place)]
+    if finding.agrees:
+        _refuse_claims(finding, matching, problems)
+        return
+    for erratum in matching:
+        _check_formula(erratum, finding, problems)
     fitting = [e for e in matching if _fits(e, finding)]
     for erratum in fitting:
         key = (erratum.id, finding.subject)
@@ -54,6 +59,34 @@ def _settle_one(
         compared=[("place", finding.place), ("printed", _show(finding.printed)), ("expected", _show(finding.expected))],
         hint=hint,
     )
+
+
+def _refuse_claims(finding: Finding, matching: Sequence[Erratum], problems: Problems) -> None:
+    for erratum in matching:
+        problems.add(
+            "erratum-unused",
+            erratum.where,
+            f"erratum '{erratum.id}' claims an error in the {finding.place} of {finding.subject}, which is right",
+            compared=[("printed", _show(finding.printed)), ("expected", _show(finding.expected))],
+            hint="narrow 'place' or 'about', or correct the transcription",
+            other=("printed", finding.where),
+        )
+
+
+def _check_formula(erratum: Erratum, finding: Finding, problems: Problems) -> None:
+    for value in (erratum.printed, erratum.used):
+        try:
+            if value is not None:
+                value(finding.variables)
+        except KeyError as error:
+            known = ", ".join(finding.variables) or "no variable"
+            problems.add(
+                "erratum-formula",
+                erratum.where,
+                f"erratum '{erratum.id}' uses {error}, which findings of rule '{finding.rule}' do not have",
+                hint=f"{known} can stand here",
+            )
+            return
 
 
 def _is_prefix(place: tuple[str, ...], full: str) -> bool:
@@ -91,12 +124,12 @@ def _check_entry(
 ) -> None:
     known = _subjects(device)
     for subject in erratum.about:
-        if not isinstance(subject, str) and _whole(subject) not in known:
+        if _whole(subject) not in known:
             problems.add(
                 "reference",
                 erratum.where,
                 f"erratum '{erratum.id}' concerns {subject}, which the device does not have",
-                hint="name what the device's files hold",
+                hint="name a code, object, error or led:, switch:, table:, formula:, layout:, telegram:, device: and an id",
             )
     if not erratum.about:
         problems.add("reference", erratum.where, f"erratum '{erratum.id}' concerns nothing that the device has")
@@ -116,16 +149,29 @@ def _check_entry(
             "erratum-unused",
             erratum.where,
             f"erratum '{erratum.id}' explains no disagreement of rule '{erratum.rule}' at {shown}",
-            compared=[("place", " ".join(erratum.place)), ("printed", erratum.printed_text), ("used", erratum.used_text)],
+            compared=[
+                ("place", " ".join(erratum.place)),
+                ("printed", erratum.printed_text),
+                ("used", erratum.used_text),
+            ],
             hint="remove it, or narrow 'about' to what really disagrees",
         )
 
 
-def _whole(subject: CodeRef | ObjectRef | ErrorRef) -> Subject:
+def _whole(subject: Subject) -> Subject:
     if isinstance(subject, CodeRef):
         return CodeRef(subject.number)
     return ObjectRef(subject.index) if isinstance(subject, ObjectRef) else subject
 
 
 def _subjects(device: Device) -> set[Subject]:
-    return {c.ref for c in device.codes} | {o.ref for o in device.objects} | {e.ref for e in device.errors}
+    named: list[tuple[str, Iterable[str]]] = [
+        ("led", (t.id for t in device.indicators)),
+        ("switch", (s.id for s in device.switches)),
+        ("table", (t.id for t in device.tables)),
+        ("formula", (f.id for f in device.formulas)),
+        ("layout", (x.id for x in device.layouts)),
+        ("telegram", (e.id for e in device.examples)),
+    ]
+    things = {f"{kind}:{name}" for kind, names in named for name in names} | {f"device:{device.id}"}
+    return {c.ref for c in device.codes} | {o.ref for o in device.objects} | {e.ref for e in device.errors} | things

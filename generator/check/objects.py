@@ -25,13 +25,21 @@ def values(model: Model, device: Device) -> Iterator[Finding]:
                 yield _finding("range-order", ref, sub, "range", str(low), str(high), "the range descends")
             if not kind.lowest <= low <= high <= kind.highest:
                 message = f"{kind.canopen_name} cannot hold {low} ... {high}"
-                yield _finding("range-type", ref, sub, "range", f"{low} ... {high}", f"{kind.lowest} ... {kind.highest}", message)
+                yield _finding(
+                    "range-type", ref, sub, "range", f"{low} ... {high}", f"{kind.lowest} ... {kind.highest}", message
+                )
             if isinstance(sub.default, int) and not low <= sub.default <= high:
                 message = f"the default {sub.default} lies outside {low} ... {high}"
                 yield _finding("default-range", ref, sub, "default", sub.default, f"{low} ... {high}", message)
         if not fits(sub.default, kind):
             yield _finding(
-                "default-type", ref, sub, "default", str(sub.default), kind.highest, f"{kind.canopen_name} cannot hold the default"
+                "default-type",
+                ref,
+                sub,
+                "default",
+                str(sub.default),
+                kind.highest,
+                f"{kind.canopen_name} cannot hold the default",
             )
         for option in sub.options:
             if not kind.lowest <= option.value <= kind.highest:
@@ -39,7 +47,9 @@ def values(model: Model, device: Device) -> Iterator[Finding]:
                 yield _finding("selection-type", ref, sub, "selection", option.value, kind.highest, message)
         for bit in [b.number for b in sub.bits] + [f.high for f in sub.fields]:
             if bit >= kind.bits:
-                yield _finding("bit-width", ref, sub, "bits", bit, kind.bits - 1, f"{kind.canopen_name} has no bit {bit}")
+                yield _finding(
+                    "bit-width", ref, sub, "bits", bit, kind.bits - 1, f"{kind.canopen_name} has no bit {bit}"
+                )
 
 
 def standard(model: Model, device: Device) -> Iterator[Finding]:
@@ -51,13 +61,27 @@ def standard(model: Model, device: Device) -> Iterator[Finding]:
         defined = norm.subindex(sub.number)
         if defined is None:
             yield _finding(
-                "standard-object", ref, sub, "subindex", sub.number, "none", f"the standard gives {norm.name} no such sub-index"
+                "standard-object",
+                ref,
+                sub,
+                "subindex",
+                sub.number,
+                "none",
+                f"the standard gives {norm.name} no such sub-index",
             )
             continue
         if sub.printed_type != defined.data_type:
-            message = f"the standard defines {defined.data_type.canopen_name}, printed is {sub.printed_type.canopen_name}"
+            message = (
+                f"the standard defines {defined.data_type.canopen_name}, printed is {sub.printed_type.canopen_name}"
+            )
             yield _finding(
-                "standard-type", ref, sub, "type", sub.printed_type.canopen_name, defined.data_type.canopen_name, message
+                "standard-type",
+                ref,
+                sub,
+                "type",
+                sub.printed_type.canopen_name,
+                defined.data_type.canopen_name,
+                message,
             )
         if sub.printed_access not in defined.access:
             message = f"the standard allows {' or '.join(defined.access)}, printed is {sub.printed_access}"
@@ -113,7 +137,13 @@ def code_references(model: Model, device: Device) -> Iterator[Finding]:
                     printed = " / ".join(c.designation for c in present)
                     expected = " / ".join(c.designation for c in device.codes if c.twin_of == twin)
                     yield _finding(
-                        "slot-twin", ref, sub, f"{place} codes", printed, expected, f"the {place} names {printed} for the slots"
+                        "slot-twin",
+                        ref,
+                        sub,
+                        f"{place} codes",
+                        printed,
+                        expected,
+                        f"the {place} names {printed} for the slots",
                     )
 
 
@@ -156,5 +186,11 @@ def _finding(
     rule: str, ref: ObjectRef, sub: SubIndex, place: str, printed: int | str, expected: int | str, message: str
 ) -> Finding:
     return Finding(
-        rule=rule, subject=ref, place=place, printed=printed, expected=expected, message=f"{ref}: {message}", where=sub.where
+        rule=rule,
+        subject=ref,
+        place=place,
+        printed=printed,
+        expected=expected,
+        message=f"{ref}: {message}",
+        where=sub.where,
     )

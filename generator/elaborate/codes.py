@@ -75,7 +75,9 @@ def _expand(node: Node, frame: Frame, errata: "ErrataIndex") -> Iterator[Code]:
         return
     missing = [key for key in _NEEDED if key not in entry.of(key)]
     if missing:
-        node.problems.add("key-absent", node.where, f"the code lacks {', '.join(missing)}", hint=f"add '{missing[0]}: ...'")
+        node.problems.add(
+            "key-absent", node.where, f"the code lacks {', '.join(missing)}", hint=f"add '{missing[0]}: ...'"
+        )
         return
     for name, printed in node.children("printed"):
         slot = _slot(name, node, frame)
@@ -157,7 +159,9 @@ def _code(
         scaling=entry.of("scaling").get("scaling"),
         range=entry.of("range").read("range", value_range),
         default=default(default_node, "default", default_node.get("default"), data_type.is_number),
-        default_cite=entry.of("default_cite").cite("default_cite") if "default_cite" in entry.of("default_cite") else None,
+        default_cite=entry.of("default_cite").cite("default_cite")
+        if "default_cite" in entry.of("default_cite")
+        else None,
         options=options(entry.of("selection"), "selection"),
         bits=bits(entry.of("bits")),
         fields=fields(entry.of("fields")),
@@ -211,7 +215,9 @@ def _printed(printed: Node, place: str, own: Node) -> Iterator[PrintedIndex]:
         yield PrintedIndex(f"chapter {place}", pair[0].first, hexadecimal, page, printed.at("index"))
     row = printed.read("table", attributes)
     if row:
-        yield PrintedIndex(f"table {place}", row.decimal, row.hexadecimal, printed.get("table_page"), printed.at("table"))
+        yield PrintedIndex(
+            f"table {place}", row.decimal, row.hexadecimal, printed.get("table_page"), printed.at("table")
+        )
 
 
 def _attributes(printed: Node) -> AttributeRow | None:

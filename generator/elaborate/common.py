@@ -50,7 +50,9 @@ def fill(text: str, node: Node, key: str, values: Mapping[str, int | str]) -> st
         value = values.get(inner.group(1)) if inner else None
         if value is None or inner is None:
             legal = " and ".join("{" + name + "}" for name in values) or "no placeholder"
-            node.problems.add("placeholder", node.at(key), f"'{match.group()}' means nothing here", hint=f"{legal} can stand here")
+            node.problems.add(
+                "placeholder", node.at(key), f"'{match.group()}' means nothing here", hint=f"{legal} can stand here"
+            )
             return match.group()
         return str(value + 1) if inner.group(2) and isinstance(value, int) else str(value)
 
@@ -123,7 +125,9 @@ def default(node: Node, key: str, value: object, is_number: bool) -> Default | N
     text = str(value)
     if text.startswith("$"):
         return node.read(key, node_relative, text)
-    node.problems.add("notation", node.at(key), f"'{text}' is not a number", hint="write an integer or '$NODEID + 0x180'")
+    node.problems.add(
+        "notation", node.at(key), f"'{text}' is not a number", hint="write an integer or '$NODEID + 0x180'"
+    )
     return None
 
 
@@ -131,5 +135,8 @@ def known_manual(name: str, node: Node, key: str, manuals: Mapping[str, Manual])
     """Note a manual that has no file in spec/manuals."""
     if name not in manuals:
         node.problems.add(
-            "name-unknown", node.at(key), f"there is no manual '{name}'", hint=suggestion(name, list(manuals), "manuals")
+            "name-unknown",
+            node.at(key),
+            f"there is no manual '{name}'",
+            hint=suggestion(name, list(manuals), "manuals"),
         )

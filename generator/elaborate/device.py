@@ -6,7 +6,9 @@ from generator.diagnostics import suggestion
 from generator.elaborate import codes as code_table
 from generator.elaborate import errata as ledger
 from generator.elaborate import errors as error_table
+from generator.elaborate import indicators as panel
 from generator.elaborate import objects as object_table
+from generator.elaborate import telegrams as telegram_table
 from generator.elaborate.common import known_manual, optional_text, origin
 from generator.elaborate.manuals import object_run
 from generator.model import (
@@ -57,7 +59,8 @@ def drive(file: SourceFile, manuals: Mapping[str, Manual]) -> Drive:
             for node in root.items("responses")
         ),
         error_fields=tuple(
-            (name, BitField(*(int(b) for b in str(run).split("...")), name)) for name, run in layout.data.items()
+            (name, BitField(int(low), int(high), name))
+            for name, (low, high) in ((name, str(run).split("...")) for name, run in layout.data.items())
         ),
         error_fields_origin=origin(number),
         error_fields_cite=number.cite(),
@@ -98,11 +101,16 @@ def device(
     entries = ledger.errata(files["errata"].root, manuals, resolve) if "errata" in files else ()
     index = code_table.ErrataIndex({e.id: e.about for e in entries})
     frame = code_table.Frame(
-        slots, base.index_base if base else NO_INDEX_BASE, base.id if base else None, shared.get(base.id) if base else None
+        slots,
+        base.index_base if base else NO_INDEX_BASE,
+        base.id if base else None,
+        shared.get(base.id) if base else None,
     )
     codes = code_table.codes(files["codes"].root, frame, index) if "codes" in files else ()
     known = {CodeRef(c.number, s.number) for c in codes for s in c.subcodes} | {c.ref for c in codes}
     error_frame = error_table.Frame(slots, base, known, index)
+    roots = {kind: file.root for kind, file in files.items()}
+    layouts = telegram_table.layouts(roots["telegrams"], index) if "telegrams" in roots else ()
     version = root.child("version")
     return Device(
         id=files["device"].stem,
@@ -121,6 +129,16 @@ def device(
         codes=codes,
         objects=object_table.objects(files["objects"].root, standard, index) if "objects" in files else (),
         errors=error_table.errors(files["errors"].root, error_frame) if "errors" in files else (),
+        indicators=panel.indicators(roots["indicators"], index) if "indicators" in roots else (),
+        switches=panel.switches(roots["switches"], index) if "switches" in roots else (),
+        tables=panel.tables(roots["tables"], index) if "tables" in roots else (),
+        formulas=panel.formulas(roots["tables"], index) if "tables" in roots else (),
+        layouts=layouts,
+        examples=(
+            telegram_table.examples(roots["telegrams"], {layout.id: layout for layout in layouts}, index)
+            if "telegrams" in roots
+            else ()
+        ),
         errata=entries,
         where=root.where,
     )
@@ -184,7 +202,9 @@ def _subjects(
 ) -> tuple[list[CodeRef], list[ObjectRef], list[ErrorRef]]:
     """What the ledger can name: codes and errors in every slot, objects."""
     offsets = {slot.name: slot for slot in slots}
-    codes, objects, errors = [], [], []
+    codes: list[CodeRef] = []
+    objects: list[ObjectRef] = []
+    errors: list[ErrorRef] = []
     if "codes" in files:
         for node in files["codes"].root.items("codes"):
             for name, _ in node.children("printed"):

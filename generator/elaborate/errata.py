@@ -1,10 +1,10 @@
 """The ledger: subjects resolved, formulas compiled."""
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 
 from generator.diagnostics import suggestion
 from generator.elaborate.common import known_manual
-from generator.model import CodeRef, ErrorRef, Erratum, ErratumPlace, Manual, ObjectRef
+from generator.model import CodeRef, Erratum, ErratumPlace, ErrorRef, Manual, ObjectRef
 from generator.model.erratum import Subject
 from generator.notation import RefRun, formula, references
 from generator.rules import RULES
@@ -22,7 +22,10 @@ def errata(root: Node, manuals: dict[str, Manual], resolve: Resolver) -> tuple[E
         name = str(node.get("id"))
         if name in seen:
             node.problems.add(
-                "duplicate", node.at("id"), f"the erratum '{name}' is written twice", other=("first", seen[name].at("id"))
+                "duplicate",
+                node.at("id"),
+                f"the erratum '{name}' is written twice",
+                other=("first", seen[name].at("id")),
             )
         seen.setdefault(name, node)
         found.append(_erratum(node, name, manuals, resolve))
@@ -84,8 +87,13 @@ def _is_formula(words: list[str]) -> bool:
 
 def resolver(codes: Iterable[CodeRef], objects: Iterable[ObjectRef], errors: Iterable[ErrorRef]) -> Resolver:
     """Resolver over the codes, objects and errors that a device has."""
-    by_type = {CodeRef: sorted(codes), ObjectRef: sorted(objects), ErrorRef: sorted(errors)}
-    kinds = {error.number: error for error in by_type[ErrorRef] if isinstance(error, ErrorRef)}
+    known_errors = sorted(errors)
+    by_type: dict[type, Sequence[CodeRef | ObjectRef | ErrorRef]] = {
+        CodeRef: sorted(codes),
+        ObjectRef: sorted(objects),
+        ErrorRef: known_errors,
+    }
+    kinds = {error.number: error for error in known_errors}
 
     def named(item: Subject) -> Subject:
         return kinds.get(item.number, item) if isinstance(item, ErrorRef) else item

@@ -74,7 +74,9 @@ def _number(node: Node) -> tuple[int, int]:
     run = found[0]
     last = run.first if run.last is None else run.last
     if last < run.first:
-        node.problems.add("run-order", node.at("number"), "the run does not ascend", hint="write the lower number first")
+        node.problems.add(
+            "run-order", node.at("number"), "the run does not ascend", hint="write the lower number first"
+        )
     return run.first, last
 
 
@@ -125,8 +127,7 @@ def _codes(node: Node, key: str, slot: Slot | None) -> tuple[CodeRef, ...]:
 def _printed(printed: Node, place: str) -> Iterator[PrintedNumber]:
     for key, page in (("overview", printed.get("page")), ("detail", printed.get("detail_page"))):
         for run in printed.read(key, numbers) or ():
-            form = "hexadecimal" if run.base == 16 else "decimal"
-            yield PrintedNumber(f"{key} {place} {form}", run.base, run.first, run.last, page, printed.at(key))
+            yield PrintedNumber(f"{key} {place}", run.base, run.first, run.last, page, printed.at(key))
 
 
 def _names(printed: Node, place: str) -> Iterator[tuple[str, str, Where]]:

@@ -23,7 +23,10 @@ def manual(file: SourceFile) -> Manual:
         number = str(node.get("chapter"))
         if number in seen:
             node.problems.add(
-                "duplicate", node.at("chapter"), f"chapter {number} stands twice", other=("first", seen[number].at("chapter"))
+                "duplicate",
+                node.at("chapter"),
+                f"chapter {number} stands twice",
+                other=("first", seen[number].at("chapter")),
             )
         seen.setdefault(number, node)
     return Manual(
@@ -60,7 +63,9 @@ def standard(file: SourceFile, manuals: Mapping[str, Manual]) -> tuple[tuple[Sta
         CobId(
             name=str(node.get("name")),
             base=int(node.get("base")),
-            objects=tuple(i for run in node.read("objects", references) or () for i in run.items if isinstance(i, ObjectRef)),
+            objects=tuple(
+                i for run in node.read("objects", references) or () for i in run.items if isinstance(i, ObjectRef)
+            ),
             cite=node.cite(),
         )
         for node in root.items("cob_ids")
@@ -109,7 +114,9 @@ def object_run(node: Node) -> tuple[int, int]:
             low, high = run.open_run
             if isinstance(low, ObjectRef) and isinstance(high, ObjectRef) and low.index <= high.index:
                 return low.index, high.index
-            node.problems.add("run-order", node.at("index"), "the run does not ascend", hint="write the lower index first")
+            node.problems.add(
+                "run-order", node.at("index"), "the run does not ascend", hint="write the lower index first"
+            )
         elif run.items and isinstance(run.items[0], ObjectRef):
             return run.items[0].index, run.items[0].index
     return 0, 0

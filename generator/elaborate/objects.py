@@ -30,7 +30,10 @@ def objects(root: Node, standard: Sequence[StandardObject], errata: ErrataIndex)
             key = (entry.kind, entry.index)
             if key in found:
                 node.problems.add(
-                    "duplicate", node.at("index"), f"{entry.designation} is written twice", other=("first", found[key].where)
+                    "duplicate",
+                    node.at("index"),
+                    f"{entry.designation} is written twice",
+                    other=("first", found[key].where),
                 )
             found.setdefault(key, entry)
     return tuple(found[key] for key in sorted(found))
@@ -57,7 +60,9 @@ def _expand(node: Node, standard: Sequence[StandardObject], errata: ErrataIndex)
             index=index,
             name=fill(str(node.get("name")), node, "name", {"n": place + 1}),
             object_type=str(object_type),
-            subindexes=tuple(_subindexes(node, ObjectRef(index), place, count, known if kind == "canopen" else None, errata)),
+            subindexes=tuple(
+                _subindexes(node, ObjectRef(index), place, count, known if kind == "canopen" else None, errata)
+            ),
             description=str(node.get("description", "")).strip(),
             origin=origin(node),
             cite=_cite(node, place, count),

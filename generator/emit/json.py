@@ -15,16 +15,27 @@ from generator.model import (
     Default,
     Device,
     DictionaryObject,
-    ErrorEntry,
     Erratum,
+    ErrorEntry,
+    Example,
+    Field,
+    FieldType,
+    Formula,
+    IndicatorRow,
+    IndicatorTable,
+    Layout,
     Manual,
     Model,
     NodeRelative,
     ObjectRef,
     Option,
+    Pattern,
     PrintedIndex,
     Range,
     SubIndex,
+    SwitchGroup,
+    Table,
+    Values,
 )
 
 Json = Mapping[str, object]
@@ -59,6 +70,11 @@ def facts(model: Model, device: Device) -> Json:
         "codes": [_code(code) for code in device.codes],
         "objects": [_object(entry) for entry in device.objects],
         "errors": [_error(error) for error in device.errors],
+        "indicators": [_indicator(table, row) for table in device.indicators for row in table.rows],
+        "switches": [_switch(group) for group in device.switches],
+        "tables": [_table(table) for table in device.tables],
+        "formulas": [_formula(formula) for formula in device.formulas],
+        "telegrams": _telegrams(device),
         "errata": [_erratum(erratum) for erratum in device.errata],
     }
 
@@ -210,13 +226,167 @@ def _error(error: ErrorEntry) -> Json:
         "causes": list(error.causes),
         "remedies": list(error.remedies),
         "description": error.description,
-        "printed": {
-            p.place: {"first": p.first, "last": p.last, "page": p.page} for p in error.printed
-        },
+        "printed": {p.place: {"first": p.first, "last": p.last, "page": p.page} for p in error.printed},
         "origin": error.origin.value,
         "cite": _cite(error.cite),
         "errata": list(error.errata),
     }
+
+
+def _indicator(table: IndicatorTable, row: IndicatorRow) -> Json:
+    return {
+        "table": table.id,
+        "name": table.name,
+        "leds": [
+            {"led": led.label, "colour": led.colour, "name": led.name, "pattern": _pattern(pattern)}
+            for led, pattern in zip(table.leds, row.patterns, strict=True)
+        ],
+        "state": row.state,
+        "meaning": row.meaning,
+        "origin": row.origin.value,
+        "cite": _cite(row.cite),
+        "errata": list(table.errata),
+    }
+
+
+def _pattern(pattern: Pattern) -> Json:
+    return {
+        "light": pattern.light.value,
+        "colour": pattern.colour,
+        "period_s": None if pattern.period is None else _number(pattern.period),
+        "flashes": pattern.flashes,
+        "pause_s": None if pattern.pause is None else _number(pattern.pause),
+    }
+
+
+def _switch(group: SwitchGroup) -> Json:
+    return {
+        "id": group.id,
+        "name": group.name,
+        "switches": list(group.labels),
+        "weights": list(group.weights),
+        "valid": None if group.valid is None else {"first": group.valid[0], "last": group.valid[1]},
+        "unit": group.unit or None,
+        "sets": [str(ref) for ref in group.sets],
+        "values": {row.value: row.positions for row in group.rows},
+        "notes": list(group.notes),
+        "origin": group.origin.value,
+        "cite": _cite(group.cite),
+        "errata": list(group.errata),
+    }
+
+
+def _table(table: Table) -> Json:
+    return {
+        "id": table.id,
+        "kind": table.kind,
+        "name": table.name,
+        "columns": [{"id": c.id, "name": c.name, "unit": c.unit or None} for c in table.columns],
+        "rows": [list(row) for row in table.rows],
+        "notes": list(table.notes),
+        "origin": table.origin.value,
+        "cite": _cite(table.cite),
+        "errata": list(table.errata),
+    }
+
+
+def _formula(formula: Formula) -> Json:
+    return {
+        "id": formula.id,
+        "name": formula.name,
+        "expression": formula.expression,
+        "unit": formula.unit or None,
+        "note": formula.note,
+        "examples": [{"values": dict(e.values), "result": e.result, "cite": _cite(e.cite)} for e in formula.examples],
+        "cite": _cite(formula.cite),
+        "errata": list(formula.errata),
+    }
+
+
+def _telegrams(device: Device) -> list[Json]:
+    """Layouts and examples of each protocol, protocols in the order of the layouts."""
+    protocols = {layout.id: layout.protocol for layout in device.layouts}
+    return [
+        {
+            "protocol": protocol,
+            "layouts": [_layout(layout) for layout in device.layouts if layout.protocol == protocol],
+            "examples": [_example(e) for e in device.examples if protocols[e.layout] == protocol],
+        }
+        for protocol in dict.fromkeys(protocols.values())
+    ]
+
+
+def _layout(layout: Layout) -> Json:
+    return {
+        "id": layout.id,
+        "name": layout.name,
+        "protocol": layout.protocol,
+        "description": layout.description,
+        "fields": _layout_fields(layout.fields, 0),
+        "origin": layout.origin.value,
+        "cite": _cite(layout.cite),
+        "errata": list(layout.errata),
+    }
+
+
+def _layout_fields(fields: Sequence[Field], start: int | None) -> list[Json]:
+    """Fields with their offsets, ``None`` behind one of variable length."""
+    found: list[Json] = []
+    offset = start
+    for field in fields:
+        found.append(
+            {
+                "name": field.name,
+                "title": field.title,
+                "type": field.type.value,
+                "offset": offset,
+                "length": field.length,
+                "length_by": _sizes(field),
+                "byte_order": "big" if field.big else "little",
+                "constant": field.constant,
+                "values": _options(field.values),
+                "bits": _fields(field.bits),
+                "bit_values": {name: _options(options) for name, options in field.bit_values},
+                "count": field.count,
+                "fields": _layout_fields(field.fields, None),
+                "description": field.description,
+            }
+        )
+        fixed = isinstance(field.length, int) and field.type is not FieldType.GROUP
+        offset = offset + field.length if offset is not None and fixed and isinstance(field.length, int) else None
+    return found
+
+
+def _sizes(field: Field) -> Json | None:
+    if field.sizes is None:
+        return None
+    return {
+        "by": field.sizes.by,
+        "sizes": {str(value): size for value, size in field.sizes.sizes},
+        "times": field.sizes.times,
+    }
+
+
+def _example(example: Example) -> Json:
+    return {
+        "id": example.id,
+        "name": example.name,
+        "layout": example.layout,
+        "direction": example.direction,
+        "sequence": example.sequence,
+        "node": example.node,
+        "identifier": example.identifier,
+        "bytes": list(example.data),
+        "printed": list(example.printed),
+        "values": _values(example.values),
+        "meaning": example.meaning,
+        "cite": _cite(example.cite),
+        "errata": list(example.errata),
+    }
+
+
+def _values(values: Values) -> Json:
+    return {k: [_values(v) for v in value] if isinstance(value, tuple) else value for k, value in values.items()}
 
 
 def _erratum(erratum: Erratum) -> Json:

@@ -8,10 +8,13 @@ that builds it (``generator.elaborate``) has resolved every reference, run and s
 from generator.model.citation import Chapter, Cite, Manual, Origin, Where
 from generator.model.code import Access, AttributeRow, Code, PrintedIndex, SubCode
 from generator.model.device import CanOpenFacts, Device, Drive, DriveCommand, DriveModule, Model, Response, Slot
-from generator.model.error import ErrorEntry, PrintedNumber
 from generator.model.erratum import Erratum, ErratumPlace
+from generator.model.error import ErrorEntry, PrintedNumber
+from generator.model.indicator import IndicatorRow, IndicatorTable, Led, Light, Pattern, SwitchGroup, SwitchRow
 from generator.model.objects import CobId, DictionaryObject, StandardObject, StandardSubIndex, SubIndex
 from generator.model.reference import CodeRef, ErrorRef, ObjectRef
+from generator.model.table import Column, Formula, FormulaExample, Table
+from generator.model.telegram import Example, Field, FieldType, Layout, Sizes, Values
 from generator.model.values import Bit, BitField, DataType, Default, NodeRelative, Option, Range
 
 __all__ = [
@@ -25,6 +28,7 @@ __all__ = [
     "CobId",
     "Code",
     "CodeRef",
+    "Column",
     "DataType",
     "Default",
     "Device",
@@ -32,24 +36,40 @@ __all__ = [
     "Drive",
     "DriveCommand",
     "DriveModule",
-    "ErrorEntry",
-    "ErrorRef",
     "Erratum",
     "ErratumPlace",
+    "ErrorEntry",
+    "ErrorRef",
+    "Example",
+    "Field",
+    "FieldType",
+    "Formula",
+    "FormulaExample",
+    "IndicatorRow",
+    "IndicatorTable",
+    "Layout",
+    "Led",
+    "Light",
     "Manual",
     "Model",
     "NodeRelative",
     "ObjectRef",
     "Option",
     "Origin",
+    "Pattern",
     "PrintedIndex",
     "PrintedNumber",
     "Range",
     "Response",
+    "Sizes",
     "Slot",
     "StandardObject",
     "StandardSubIndex",
     "SubCode",
     "SubIndex",
+    "SwitchGroup",
+    "SwitchRow",
+    "Table",
+    "Values",
     "Where",
 ]

@@ -33,8 +33,11 @@ class PrintedIndex:
 
 @dataclass(frozen=True, slots=True)
 class AttributeRow:
-    """Row of the table of attributes, as printed: structure "A" (array) or "E" (single variable), element
-    count, spelling of the data type, factor, access "R" or "RW" with further marks."""
+    """Row of the table of attributes, as printed.
+
+    ``structure``: "A" (array) or "E" (single variable).  ``count``: elements.  ``access``: "R" or "RW", with "CINH".
+    ``name``: ``None`` where it is that of the code's own table.
+    """
 
     structure: str
     count: int

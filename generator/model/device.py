@@ -4,9 +4,12 @@ from dataclasses import dataclass
 
 from generator.model.citation import Cite, Manual, Origin, Where
 from generator.model.code import Code
-from generator.model.error import ErrorEntry
 from generator.model.erratum import Erratum
+from generator.model.error import ErrorEntry
+from generator.model.indicator import IndicatorTable, SwitchGroup
 from generator.model.objects import CobId, DictionaryObject, StandardObject
+from generator.model.table import Formula, Table
+from generator.model.telegram import Example, Layout
 from generator.model.values import BitField
 
 
@@ -76,8 +79,10 @@ class Drive:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CanOpenFacts:
-    """What [DeviceInfo] of an EDS needs and no object says: bit rates in kbit/s, granularity in bits, number of
-    the code that holds the node address."""
+    """What [DeviceInfo] of an EDS needs and no object says.
+
+    ``baud_rates`` in kbit/s, ``granularity`` of PDO mapping in bits, ``node_address``: number of its code.
+    """
 
     baud_rates: tuple[int, ...]
     granularity: int
@@ -90,7 +95,8 @@ class CanOpenFacts:
 class Device:
     """A device with everything that its manual says, both slots expanded.
 
-    ``attributes``: where the table of attributes stands.  ``codes`` ascend by number, ``objects`` by index; ``errors`` stand in the order of kind and number.
+    ``attributes``: where the table of attributes stands.  ``codes`` ascend by number, ``objects`` by index; ``errors``
+    stand in the order of kind and number.
     """
 
     id: str
@@ -109,6 +115,12 @@ class Device:
     codes: tuple[Code, ...]
     objects: tuple[DictionaryObject, ...]
     errors: tuple[ErrorEntry, ...]
+    indicators: tuple[IndicatorTable, ...]
+    switches: tuple[SwitchGroup, ...]
+    tables: tuple[Table, ...]
+    formulas: tuple[Formula, ...]
+    layouts: tuple[Layout, ...]
+    examples: tuple[Example, ...]
     errata: tuple[Erratum, ...]
     where: Where
 

@@ -10,7 +10,7 @@ from generator.model.reference import CodeRef, ErrorRef
 class PrintedNumber:
     """A number or run as one place prints it; ``base`` is 16 or 10, ``last`` is ``None`` for one number.
 
-    ``place``: "overview MXI1 hexadecimal", "overview MXI2 decimal", "detail MXI1 hexadecimal", ...
+    ``place``: "overview MXI1", "detail MXI2", ...
     """
 
     place: str

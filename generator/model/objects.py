@@ -87,8 +87,10 @@ class StandardSubIndex:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class StandardObject:
-    """Objects ``first`` ... ``last`` as a standard defines them; ``category`` "mandatory", "optional" or
-    "conditional"."""
+    """Objects ``first`` ... ``last`` as a standard defines them.
+
+    ``category``: "mandatory", "optional" or "conditional".
+    """
 
     first: int
     last: int

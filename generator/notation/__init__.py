@@ -11,9 +11,9 @@ from pathlib import Path
 from typing import Any
 
 from lark import Lark, Token, Tree
-from lark.exceptions import UnexpectedInput
+from lark.exceptions import UnexpectedInput, UnexpectedToken
 
-from generator.model import CodeRef, ErrorRef, NodeRelative, ObjectRef, Range
+from generator.model import CodeRef, ErrorRef, Light, NodeRelative, ObjectRef, Pattern, Range
 
 _FOLDER = Path(__file__).resolve().parent
 
@@ -37,6 +37,7 @@ _EXAMPLES = {
     "citation": "13.2 p. 107",
     "attributes": "24264 / 5EC8 | A 8 BITFIELD_8 | 1 | RW",
     "formula": "25575 - code",
+    "pattern": "blink 0.2 s",
 }
 
 
@@ -50,7 +51,8 @@ def _parse(name: str, text: str) -> Tree[Token]:
     try:
         return _parser(name).parse(text)
     except UnexpectedInput as error:
-        column = error.column - 1 if isinstance(error.column, int) and error.column > 0 else len(text)
+        at_end = isinstance(error, UnexpectedToken) and error.token.type == "$END"
+        column = error.column - 1 if not at_end and isinstance(error.column, int) and error.column > 0 else len(text)
         message = f"'{text}' is not written as in '{_EXAMPLES[name]}'"
         raise NotationError(message, min(column, len(text)), _EXAMPLES[name]) from None
 
@@ -81,7 +83,8 @@ def references(text: str) -> tuple[RefRun, ...]:
 
 
 def _reference(tree: Tree[Token]) -> RefRun:
-    parts = [str(t) if t is not None else None for t in tree.children if t is None or t.type != "DOTS"]
+    tokens: list[Any] = tree.children
+    parts = [None if t is None else str(t) for t in tokens if t is None or t.type != "DOTS"]
     match tree.data:
         case "code":
             number = int(str(parts[0])[1:])
@@ -91,8 +94,8 @@ def _reference(tree: Tree[Token]) -> RefRun:
             last = int(str(parts[-1])) if parts[-1] is not None else first
             return RefRun(tuple(CodeRef(number, k) for k in range(first, last + 1)))
         case "code_run":
-            a, b = (CodeRef(int(str(parts[i])[1:]), None if parts[i + 1] is None else int(str(parts[i + 1]))) for i in (0, 2))
-            return RefRun((), (a, b))
+            ends = [CodeRef(int(str(parts[i])[1:]), _optional(parts[i + 1])) for i in (0, 2)]
+            return RefRun((), (ends[0], ends[1]))
         case "object":
             index = _object_index(str(parts[0]))
             if parts[1] is None:
@@ -102,16 +105,21 @@ def _reference(tree: Tree[Token]) -> RefRun:
             return RefRun(tuple(ObjectRef(index, k) for k in range(first, last + 1)))
         case "object_run":
             low, high = _object_index(str(parts[0])), _object_index(str(parts[2]))
-            sub = None if parts[1] is None else int(str(parts[1]))
+            sub = _optional(parts[1])
             if sub is None:
                 return RefRun((), (ObjectRef(low), ObjectRef(high)))
             return RefRun(tuple(ObjectRef(i, sub) for i in range(low, high + 1)))
         case "error":
             return RefRun((ErrorRef("", int(str(parts[0])[2:], 16)),))
         case "error_run":
-            return RefRun((), tuple(ErrorRef("", int(str(parts[i])[2:], 16)) for i in (0, 1)))  # type: ignore[arg-type]
+            lowest, highest = (ErrorRef("", int(str(part)[2:], 16)) for part in parts)
+            return RefRun((), (lowest, highest))
         case _:
             return RefRun((str(parts[0]),))
+
+
+def _optional(part: str | None) -> int | None:
+    return None if part is None else int(part)
 
 
 def _object_index(text: str) -> int:
@@ -161,7 +169,8 @@ def _number_run(text: str, run: Tree[Token], base: int) -> NumberRun:
         try:
             values.append((int(digits, actual), actual))
         except ValueError:
-            raise NotationError(f"'{digits}' is not a decimal number", token.column - 1 if token.column else 0, text) from None
+            column = token.column - 1 if token.column else 0
+            raise NotationError(f"'{digits}' is not a decimal number", column, text) from None
     return NumberRun(values[0][0], values[1][0] if len(values) > 1 else None, values[0][1])
 
 
@@ -205,7 +214,13 @@ def attributes(text: str) -> Attributes:
         raise NotationError(f"'{decimal}' is not a decimal number", 0, _EXAMPLES["attributes"])
     count, factor = found["INT"]
     return Attributes(
-        int(decimal), int(hexadecimal, 16), found["STRUCTURE"][0], int(count), found["TYPE"][0], int(factor), found["ACCESS"][0]
+        decimal=int(decimal),
+        hexadecimal=int(hexadecimal, 16),
+        structure=found["STRUCTURE"][0],
+        count=int(count),
+        type_name=found["TYPE"][0],
+        factor=int(factor),
+        access=found["ACCESS"][0],
     )
 
 
@@ -236,3 +251,18 @@ def _compile(tree: Any) -> Formula:
     operation = _OPERATIONS[str(tree.data)]
     left, right = (_compile(child) for child in tree.children)
     return lambda values: operation(left(values), right(values))
+
+
+def pattern(text: str) -> Pattern:
+    """A blink pattern."""
+    tree = _parse("pattern", text)
+    parts = {t.type: str(t) for t in tree.children if isinstance(t, Token)}
+    seconds = Fraction(parts["NUMBER"]) if "NUMBER" in parts else None
+    light = Light(str(tree.data))
+    return Pattern(
+        light,
+        colour=parts.get("COLOUR"),
+        period=seconds if light is Light.BLINK else None,
+        flashes=int(parts["COUNT"]) if "COUNT" in parts else None,
+        pause=seconds if light is Light.FLASH else None,
+    )

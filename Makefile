@@ -1,0 +1,53 @@
+# make         regenerate what is out of date        make check   look for problems, write nothing
+# make test    the whole test suite                  make help    all targets
+MAKEFLAGS += --no-builtin-rules
+.DELETE_ON_ERROR:
+
+PYTHON ?= python3
+VENV := .venv
+RUN := $(VENV)/bin/python
+SOURCES := $(shell find spec generator templates -type f -not -path '*/__pycache__/*' -not -name '.*')
+PIP := $(RUN) -m pip install --quiet --disable-pip-version-check
+
+.PHONY: all check test lint census clean help
+all: .build/generated
+
+.build/generated: $(SOURCES) $(VENV)/ready
+	@mkdir -p .build
+	$(RUN) -m generator build
+	@touch $@
+
+$(VENV)/ready: requirements.txt
+	@command -v $(PYTHON) >/dev/null || { echo "make: install Python 3.11 or later ($(PYTHON) is not on the PATH)" >&2; exit 1; }
+	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || { echo "make: $(PYTHON) is older than Python 3.11" >&2; exit 1; }
+	$(PYTHON) -m venv $(VENV)
+	$(PIP) -r requirements.txt
+	@touch $@
+
+$(VENV)/ready-for-tests: requirements-test.txt $(VENV)/ready
+	$(PIP) -r requirements-test.txt
+	@touch $@
+
+check: $(VENV)/ready ## look for problems in spec/, write nothing
+	$(RUN) -m generator check
+
+census: $(VENV)/ready ## print every fact, one a line, and the coverage of each manual
+	@$(RUN) -m generator census
+
+test: .build/generated $(VENV)/ready-for-tests lint ## run the whole test suite
+	@command -v cc >/dev/null || { echo "make test: install a C compiler (cc is not on the PATH)" >&2; exit 1; }
+	@command -v c++ >/dev/null || { echo "make test: install a C++ compiler (c++ is not on the PATH)" >&2; exit 1; }
+	@command -v cargo >/dev/null || { echo "make test: install Rust (cargo is not on the PATH)" >&2; exit 1; }
+	$(RUN) -m pytest
+
+lint: $(VENV)/ready-for-tests ## ruff and mypy --strict over the compiler and the tests
+	$(VENV)/bin/ruff check generator tests
+	$(VENV)/bin/ruff format --check generator tests
+	$(VENV)/bin/mypy generator tests
+
+clean: ## remove the virtual environment and what builds and tests leave behind
+	rm -rf $(VENV) .build .pytest_cache .mypy_cache .ruff_cache .hypothesis generated/.state.json
+
+help: ## show this list
+	@echo "make            regenerate what is out of date in generated/"
+	@sed -n 's/^\([a-z]*\):.*## \(.*\)/make \1|\2/p' Makefile | while IFS='|' read -r a b; do printf '%-15s %s\n' "$$a" "$$b"; done

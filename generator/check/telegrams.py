@@ -1,0 +1,199 @@
+"""Checks of what can be executed: telegrams, formulas, DIP switches, LED patterns."""
+
+from collections.abc import Iterator
+from itertools import combinations
+
+from generator.check.finding import Finding
+from generator.check.objects import missing_code
+from generator.codec import CodecError, decode, encode
+from generator.model import CodeRef, Device, Example, Layout, Model, Values
+from generator.model.telegram import OPEN, Value
+
+
+def examples(model: Model, device: Device) -> Iterator[Finding]:
+    """Rules telegram-bytes, telegram-values: each example decodes to its values and encodes to its bytes."""
+    layouts = {layout.id: layout for layout in device.layouts}
+    for example in device.examples:
+        if example.printed != example.data:
+            yield _finding(
+                "telegram-bytes",
+                example,
+                show(example.printed),
+                show(example.data),
+                f"the printed bytes of '{example.id}' are not the ones that are used",
+            )
+        yield from _executed(example, layouts[example.layout])
+
+
+def _executed(example: Example, layout: Layout) -> Iterator[Finding]:
+    try:
+        values = decode(layout, example.data)
+    except CodecError as error:
+        yield _finding(
+            "telegram-values", example, show(example.data), layout.id, f"'{example.id}' does not decode: {error}"
+        )
+        return
+    for name, said, found in _differences(example.values, values, ""):
+        yield _finding(
+            "telegram-values",
+            example,
+            str(said),
+            str(found),
+            f"'{example.id}': {name} is {_hex(found)} in the bytes, not {_hex(said)}",
+        )
+    try:
+        data = encode(layout, example.values)
+    except CodecError as error:
+        yield _finding(
+            "telegram-values", example, show(example.data), layout.id, f"'{example.id}' does not encode: {error}"
+        )
+        return
+    if len(data) != len(example.data) or any(
+        a != b for a, b in zip(data, example.data, strict=True) if a is not None and b is not None
+    ):
+        yield _finding(
+            "telegram-bytes",
+            example,
+            show(example.data),
+            show(data),
+            f"the values of '{example.id}' encode to other bytes",
+        )
+
+
+def show(data: tuple[int | None, ...]) -> str:
+    """Bytes as the spec writes them."""
+    return " ".join("XX" if octet is None else f"{octet:02X}" for octet in data)
+
+
+def _hex(value: Value) -> str:
+    return f"{value} (0x{value:X})" if isinstance(value, int) and value >= 0 else str(value)
+
+
+def _differences(said: Values, found: Values, path: str) -> Iterator[tuple[str, Value, Value]]:
+    for name, value in said.items():
+        actual = found.get(name, "absent")
+        if isinstance(value, tuple) and isinstance(actual, tuple) and len(value) == len(actual):
+            for position, (a, b) in enumerate(zip(value, actual, strict=True)):
+                yield from _differences(a, b, f"{path}{name}[{position}].")
+        elif value != actual and OPEN not in (value, actual):
+            yield path + name, value, actual
+
+
+def _finding(rule: str, example: Example, printed: str, expected: str, message: str) -> Finding:
+    return Finding(
+        rule=rule,
+        subject=f"telegram:{example.id}",
+        place="bytes",
+        printed=printed,
+        expected=expected,
+        message=message,
+        where=example.where,
+    )
+
+
+def identifiers(model: Model, device: Device) -> Iterator[Finding]:
+    """Rule cob-id: the identifier of an example is a base of the predefined connection set plus its node address."""
+    bases = {c.base for c in model.cob_ids}
+    for example in device.examples:
+        if example.identifier is None or example.node is None:
+            continue
+        if example.identifier - example.node not in bases:
+            yield Finding(
+                rule="cob-id",
+                subject=f"telegram:{example.id}",
+                place="identifier",
+                printed=example.identifier,
+                expected="none",
+                message=f"0x{example.identifier:X} is no predefined identifier of node {example.node}",
+                where=example.where,
+            )
+
+
+def formulas(model: Model, device: Device) -> Iterator[Finding]:
+    """Rule formula-example: worked examples give the printed result."""
+    for formula in device.formulas:
+        for example in formula.examples:
+            try:
+                result = formula.evaluate(dict(example.values))
+            except KeyError as error:
+                yield Finding(
+                    rule="formula-example",
+                    subject=f"formula:{formula.id}",
+                    place="values",
+                    printed="none",
+                    expected=str(error.args[0]),
+                    message=f"the example gives no value for {error.args[0]}",
+                    where=example.where,
+                )
+                continue
+            if result != example.result:
+                yield Finding(
+                    rule="formula-example",
+                    subject=f"formula:{formula.id}",
+                    place="result",
+                    printed=example.result,
+                    expected=result,
+                    message=f"{formula.expression} gives {result}, not {example.result}",
+                    where=example.where,
+                )
+
+
+def switches(model: Model, device: Device) -> Iterator[Finding]:
+    """Rules switch-row, switch-distinct and reference: weights give the printed value, no position stands twice."""
+    for group in device.switches:
+        subject = f"switch:{group.id}"
+        for row in group.rows:
+            if (
+                group.weights
+                and row.value.isdigit()
+                and "x" not in row.positions
+                and group.sum(row.positions) != int(row.value)
+            ):
+                yield Finding(
+                    rule="switch-row",
+                    subject=subject,
+                    place=f"row {row.value}",
+                    printed=row.positions,
+                    expected=str(group.sum(row.positions)),
+                    message=f"the switches of row {row.value} add up to {group.sum(row.positions)}",
+                    where=row.where,
+                )
+        for a, b in combinations(group.rows, 2):
+            if all(p == q or "x" in (p, q) for p, q in zip(a.positions, b.positions, strict=True)):
+                yield Finding(
+                    rule="switch-distinct",
+                    subject=subject,
+                    place=f"row {b.value}",
+                    printed=b.positions,
+                    expected="a position of its own",
+                    message=f"the rows {a.value} and {b.value} have the same position",
+                    where=b.where,
+                )
+        for ref in group.sets:
+            problem = missing_code(CodeRef(ref.number, ref.subcode), device)
+            if problem:
+                yield Finding(
+                    rule="reference",
+                    subject=subject,
+                    place="sets",
+                    printed=str(ref),
+                    expected="a code of the device",
+                    message=problem,
+                    where=group.where,
+                )
+
+
+def patterns(model: Model, device: Device) -> Iterator[Finding]:
+    """Rule led-pattern: the rows of an LED table can be told apart."""
+    for table in device.indicators:
+        for a, b in combinations(table.rows, 2):
+            if all(p.overlaps(q) for p, q in zip(a.patterns, b.patterns, strict=True)):
+                yield Finding(
+                    rule="led-pattern",
+                    subject=f"led:{table.id}",
+                    place=f"row {b.state}",
+                    printed=b.state,
+                    expected=a.state,
+                    message=f"'{a.state}' and '{b.state}' look the same",
+                    where=b.where,
+                )

@@ -1,0 +1,174 @@
+"""LEDs, DIP switches, tables and formulas."""
+
+from generator.elaborate.codes import ErrataIndex
+from generator.elaborate.common import origin
+from generator.model import (
+    CodeRef,
+    Column,
+    Formula,
+    FormulaExample,
+    IndicatorRow,
+    IndicatorTable,
+    Led,
+    Pattern,
+    SwitchGroup,
+    SwitchRow,
+    Table,
+)
+from generator.model.indicator import Light
+from generator.notation import formula, pattern, references, value_range
+from generator.tree import Node
+
+
+def indicators(root: Node, errata: ErrataIndex) -> tuple[IndicatorTable, ...]:
+    """LED tables of a device's indicators.yaml."""
+    return tuple(_indicator(node, errata) for node in unique(root, "tables"))
+
+
+def unique(root: Node, key: str) -> list[Node]:
+    """The entries below a key; an id that stands twice is noted."""
+    seen: dict[str, Node] = {}
+    for node in root.items(key):
+        name = str(node.get("id"))
+        if name in seen:
+            node.problems.add(
+                "duplicate", node.at("id"), f"'{name}' is written twice", other=("first", seen[name].at("id"))
+            )
+        seen.setdefault(name, node)
+    return list(seen.values())
+
+
+def _indicator(node: Node, errata: ErrataIndex) -> IndicatorTable:
+    leds = tuple(Led(label, str(led.get("colour")), str(led.get("name", ""))) for label, led in node.children("leds"))
+    return IndicatorTable(
+        id=str(node.get("id")),
+        name=str(node.get("name")),
+        leds=leds,
+        rows=tuple(_row(row, node, leds) for row in node.items("rows")),
+        cite=node.cite(),
+        errata=errata.of(f"led:{node.get('id')}"),
+        where=node.at("id"),
+    )
+
+
+def _row(row: Node, table: Node, leds: tuple[Led, ...]) -> IndicatorRow:
+    patterns = row.child("patterns")
+    assert patterns is not None
+    labels = [led.label for led in leds]
+    for label in patterns.data:
+        if label not in labels:
+            row.problems.add(
+                "name-unknown",
+                patterns.at_key(label),
+                f"the table has no LED '{label}'",
+                hint=f"LEDs of the table: {', '.join(labels)}",
+            )
+    return IndicatorRow(
+        patterns=tuple(patterns.read(label, pattern) or Pattern(Light.ANY) for label in labels),
+        state=str(row.get("state")),
+        meaning=str(row.get("meaning", "")).strip(),
+        origin=origin(row),
+        cite=row.cite() if "cite" in row else table.cite(),
+        where=row.where,
+    )
+
+
+def switches(root: Node, errata: ErrataIndex) -> tuple[SwitchGroup, ...]:
+    """DIP switches of a device's switches.yaml."""
+    return tuple(_switch(node, errata) for node in unique(root, "switches"))
+
+
+def _switch(node: Node, errata: ErrataIndex) -> SwitchGroup:
+    labels = node.texts("labels")
+    rows = node.child("rows")
+    assert rows is not None
+    for value, positions in rows.data.items():
+        if len(str(positions)) != len(labels):
+            node.problems.add(
+                "list-length",
+                rows.at(value),
+                f"{len(str(positions))} positions for {len(labels)} switches",
+                hint="give one of 0, 1 and x for each switch",
+            )
+    weights = tuple(node.get("weights", ()))
+    if weights and len(weights) != len(labels):
+        node.problems.add("list-length", node.at("weights"), f"{len(weights)} weights for {len(labels)} switches")
+        weights = ()
+    valid = node.read("valid", value_range)
+    return SwitchGroup(
+        id=str(node.get("id")),
+        name=str(node.get("name")),
+        labels=labels,
+        weights=weights,
+        valid=(int(valid.low), int(valid.high)) if valid else None,
+        unit=str(node.get("unit", "")),
+        sets=tuple(i for run in node.read("sets", references) or () for i in run.items if isinstance(i, CodeRef)),
+        rows=tuple(SwitchRow(value=v, positions=str(p), where=rows.at(v)) for v, p in rows.data.items()),
+        notes=tuple(text.strip() for text in node.texts("notes")),
+        origin=origin(node),
+        cite=node.cite(),
+        errata=errata.of(f"switch:{node.get('id')}"),
+        where=node.at("id"),
+    )
+
+
+def tables(root: Node, errata: ErrataIndex) -> tuple[Table, ...]:
+    """Tables of a device's tables.yaml."""
+    return tuple(_table(node, errata) for node in unique(root, "tables"))
+
+
+def _table(node: Node, errata: ErrataIndex) -> Table:
+    columns = tuple(Column(str(c.get("id")), str(c.get("name")), str(c.get("unit", ""))) for c in node.items("columns"))
+    rows = node.get("rows", ())
+    for position, row in enumerate(rows):
+        if len(row) != len(columns):
+            node.problems.add(
+                "list-length",
+                node.at("rows"),
+                f"row {position + 1} has {len(row)} cells for {len(columns)} columns",
+                hint="give every column a cell, '-' for an empty one",
+            )
+    return Table(
+        id=str(node.get("id")),
+        kind=str(node.get("kind")),
+        name=str(node.get("name")),
+        columns=columns,
+        rows=tuple(tuple(row) for row in rows),
+        notes=tuple(text.strip() for text in node.texts("notes")),
+        origin=origin(node),
+        cite=node.cite(),
+        errata=errata.of(f"table:{node.get('id')}"),
+        where=node.at("id"),
+    )
+
+
+def formulas(root: Node, errata: ErrataIndex) -> tuple[Formula, ...]:
+    """Formulas of a device's tables.yaml."""
+    found = []
+    for node in unique(root, "formulas"):
+        evaluate = node.read("expression", formula)
+        if evaluate is None:
+            continue
+        found.append(
+            Formula(
+                id=str(node.get("id")),
+                name=str(node.get("name")),
+                expression=str(node.get("expression")),
+                evaluate=evaluate,
+                unit=str(node.get("unit", "")),
+                note=str(node.get("note", "")).strip(),
+                examples=tuple(
+                    FormulaExample(
+                        values=tuple(sorted((k, int(v)) for k, v in example.get("values").items())),
+                        result=int(example.get("result")),
+                        cite=example.cite(),
+                        where=example.at("result"),
+                    )
+                    for example in node.items("examples")
+                ),
+                cite=node.cite(),
+                errata=errata.of(f"formula:{node.get('id')}"),
+                where=node.at("id"),
+            )
+        )
+    return tuple(found)

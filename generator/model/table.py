@@ -1,0 +1,57 @@
+"""Tables and formulas that have no form of their own."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+
+from generator.model.citation import Cite, Origin, Where
+
+
+@dataclass(frozen=True, slots=True)
+class Column:
+    """A column: stable name, heading, unit of its numbers ("" where none)."""
+
+    id: str
+    name: str
+    unit: str
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Table:
+    """A table as printed; ``kind`` as in ``tables.schema.yaml``; a row has one cell for each column."""
+
+    id: str
+    kind: str
+    name: str
+    columns: tuple[Column, ...]
+    rows: tuple[tuple[int | str, ...], ...]
+    notes: tuple[str, ...]
+    origin: Origin
+    cite: Cite
+    errata: tuple[str, ...]
+    where: Where
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class FormulaExample:
+    """A worked example: values of the names, printed result."""
+
+    values: tuple[tuple[str, int], ...]
+    result: int
+    cite: Cite
+    where: Where
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Formula:
+    """A formula; ``evaluate`` maps values of the names to the result in ``unit``."""
+
+    id: str
+    name: str
+    expression: str
+    evaluate: Callable[[Mapping[str, int]], int]
+    unit: str
+    note: str
+    examples: tuple[FormulaExample, ...]
+    cite: Cite
+    errata: tuple[str, ...]
+    where: Where
