@@ -66,6 +66,8 @@ RULES: dict[str, str] = {
     "erratum-ambiguous": "A disagreement is explained by one erratum alone.",
     "erratum-formula": "The formulas of an erratum use the variables that its subject has.",
     # Emission
+    "object-index": "Every object on a CANopen bus has an index of its own, inside the object dictionary.",
+    "object-value": "Names, defaults and limits of an object can be expressed on the bus.",
     "name-collision": "No two facts get the same name in a generated file.",
     "not-ascii": "Text for a target that is ASCII has ASCII characters.",
 }

@@ -1,0 +1,407 @@
+"""EDS files (CiA 306): one for each CANopen device, slot and product.
+
+The layout is the one that every reader known takes: ASCII, CR LF, one blank line between sections, all keys in
+standard spelling and order, no key that a reader could refuse.
+"""
+
+import re
+import textwrap
+import unicodedata
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from generator import VERSION
+from generator.emit.base import EmitError, Output, Target
+from generator.emit.canopen import (
+    MANDATORY,
+    MANUFACTURER_AREA,
+    RPDO_PARAMETERS,
+    TPDO_PARAMETERS,
+    BusObject,
+    Entry,
+    ObjectDictionary,
+    Remark,
+    object_dictionaries,
+)
+from generator.emit.environment import render as render_template
+from generator.model import Cite, DataType, Model, NodeRelative, Where
+from generator.naming import Scope
+
+_BIT_RATES = (10, 20, 50, 125, 250, 500, 800, 1000)
+"""Bit rates in kbit/s that [DeviceInfo] has a key for."""
+_ASSUMED = {
+    "SimpleBootUpSlave": "1",
+    "DynamicChannelsSupported": "0",
+    "CompactPDO": "0",
+    "GroupMessaging": "0",
+    "LSS_Supported": "0",
+}
+"""Keys of [DeviceInfo] that no manual speaks of."""
+_OBJECT_TYPES = {"VAR": "0x7", "ARRAY": "0x8", "RECORD": "0x9"}
+_LONGEST_NAME = 241
+_COMMENT_WIDTH = 110
+
+_REPLACED = str.maketrans(
+    {
+        '"': "'",
+        ";": ",",
+        "#": "no. ",
+        "=": ":",
+        "\N{LEFT DOUBLE QUOTATION MARK}": "'",
+        "\N{RIGHT DOUBLE QUOTATION MARK}": "'",
+        "\N{DOUBLE LOW-9 QUOTATION MARK}": "'",
+        "\N{LEFT-POINTING DOUBLE ANGLE QUOTATION MARK}": "'",
+        "\N{RIGHT-POINTING DOUBLE ANGLE QUOTATION MARK}": "'",
+        "\N{RIGHT SINGLE QUOTATION MARK}": "'",
+        "\N{EN DASH}": "-",
+        "\N{EM DASH}": "-",
+        "\N{MINUS SIGN}": "-",
+        "\N{BLACK SQUARE}": "/",
+        "\N{RIGHTWARDS ARROW}": "->",
+        "\N{LEFTWARDS ARROW}": "<-",
+        "\N{MULTIPLICATION SIGN}": "x",
+        "\N{MICRO SIGN}": "u",
+        "\N{GREEK SMALL LETTER MU}": "u",
+        "\N{GREEK CAPITAL LETTER OMEGA}": "Ohm",
+        "\N{DEGREE SIGN}": " deg",
+        "\N{REGISTERED SIGN}": "",
+        "\N{TRADE MARK SIGN}": "",
+        "\N{LATIN SMALL LETTER SHARP S}": "ss",
+    }
+)
+"""What stands for characters that an EDS cannot hold, or that some reader takes for syntax."""
+_NUMBER_LIKE = re.compile(r"[+-]?(0[xX])?[0-9A-Fa-f_]+")
+_PLAIN = re.compile(r"[ -!$-:<>-~]+")
+"""Printable ASCII without the characters that some reader takes for syntax."""
+_WORD = re.compile(r"[A-Za-z0-9]+")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Section:
+    """Section of an object or a sub-index.
+
+    ``sub_number`` is the number of sub sections of an array or record and "" for a value; ``low``, ``high`` and
+    ``default`` are "" where the key is left out.
+    """
+
+    title: str
+    name: str
+    object_type: str
+    sub_number: str = ""
+    data_type: str = ""
+    low: str = ""
+    high: str = ""
+    access: str = ""
+    default: str = ""
+    mapping: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class ObjectList:
+    """A list of supported objects and the text of their sections."""
+
+    title: str
+    indexes: tuple[str, ...]
+    sections: str
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class FileInfo:
+    """Values of [FileInfo]; version and revision are those of the spec, the date is that of its release."""
+
+    name: str
+    version: str
+    revision: str
+    description: str
+    date: str
+    author: str
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class DeviceInfo:
+    """Values of [DeviceInfo]; ``bit_rates`` holds (key, "0" or "1"), ``assumed`` what no manual says."""
+
+    vendor_name: str
+    vendor_number: str
+    product_name: str
+    product_number: str
+    revision_number: str
+    order_code: str
+    bit_rates: tuple[tuple[str, str], ...]
+    boot_up_master: str
+    granularity: str
+    rpdos: int
+    tpdos: int
+    assumed: dict[str, str]
+
+
+def render(model: Model) -> dict[str, Output]:
+    """EDS files of all CANopen devices by file name.
+
+    Raises:
+        EmitError: A name, default or text cannot be written in an EDS, or two files would share a name.
+    """
+    outputs: dict[str, Output] = {}
+    for device in model.devices:
+        rendered: dict[BusObject, str] = {}
+        for dictionary in object_dictionaries(device):
+            name = _file_name(dictionary)
+            if name.lower() in (other.lower() for other in outputs):
+                raise EmitError("name-collision", device.where, f"two EDS files would be called '{name}'")
+            outputs[name] = Output(_text(model, dictionary, name, rendered), newline="\r\n", encoding="ascii")
+    return outputs
+
+
+TARGET = Target("eds", render)
+
+
+def _text(model: Model, dictionary: ObjectDictionary, file_name: str, rendered: dict[BusObject, str]) -> str:
+    """Text of one file; ``rendered`` keeps the sections of objects, most of which all files of a device share."""
+    _claim_names(dictionary, file_name)
+    for entry in dictionary.objects:
+        if entry not in rendered:
+            rendered[entry] = render_template("eds/object.eds.j2", sections=_sections(entry))
+    return render_template(
+        "eds/device.eds.j2",
+        file=_file_info(model, dictionary, file_name),
+        device=_device_info(dictionary),
+        comments=_comments(model, dictionary),
+        lists=[
+            ObjectList(
+                title=title,
+                indexes=tuple(f"0x{entry.index:04X}" for entry in entries),
+                sections="".join(rendered[entry] for entry in entries),
+            )
+            for title, entries in _lists(dictionary)
+        ],
+    )
+
+
+def _lists(dictionary: ObjectDictionary) -> tuple[tuple[str, list[BusObject]], ...]:
+    """The three lists of objects in the order of CiA 306."""
+    mandatory = [entry for entry in dictionary.objects if entry.index in MANDATORY]
+    manufacturer = [entry for entry in dictionary.objects if entry.index in MANUFACTURER_AREA]
+    optional = [
+        entry for entry in dictionary.objects if entry.index not in MANDATORY and entry.index not in MANUFACTURER_AREA
+    ]
+    return (("MandatoryObjects", mandatory), ("OptionalObjects", optional), ("ManufacturerObjects", manufacturer))
+
+
+# Objects
+
+
+def _sections(entry: BusObject) -> list[Section]:
+    if entry.object_type == "VAR":
+        return [_value_section(f"{entry.index:04X}", _object_name(entry), entry.entries[0])]
+    head = Section(
+        title=f"{entry.index:04X}",
+        name=_object_name(entry),
+        object_type=_OBJECT_TYPES[entry.object_type],
+        sub_number=str(len(entry.entries)),
+    )
+    values = [
+        _value_section(f"{entry.index:04X}sub{value.subindex:X}", _entry_name(value), value) for value in entry.entries
+    ]
+    return [head, *values]
+
+
+def _value_section(title: str, name: str, entry: Entry) -> Section:
+    return Section(
+        title=title,
+        name=name,
+        object_type=_OBJECT_TYPES["VAR"],
+        data_type=f"0x{entry.data_type.canopen_number:04X}",
+        low="" if entry.low is None else str(entry.low),
+        high="" if entry.high is None else str(entry.high),
+        access=entry.access,
+        default=_default(entry),
+        mapping="1" if entry.mappable else "0",
+    )
+
+
+def _default(entry: Entry) -> str:
+    default = entry.default
+    if default is None:
+        return ""
+    if isinstance(default, NodeRelative):
+        return f"$NODEID+0x{default.base:X}"
+    if isinstance(default, int):
+        return f"0x{default:0{entry.data_type.bits // 4}X}" if entry.bit_coded and default >= 0 else str(default)
+    if entry.data_type is not DataType.VISIBLE_STRING:
+        return default.encode("utf-8").hex().upper()
+    if default and (not _PLAIN.fullmatch(default) or default.strip() != default):
+        raise EmitError("object-value", entry.where, f"an EDS cannot hold the text '{default}' as a default")
+    return default
+
+
+def _object_name(entry: BusObject) -> str:
+    return _parameter_name(entry.name, entry.designation, entry.where)
+
+
+def _entry_name(entry: Entry) -> str:
+    return _parameter_name(entry.name, f"Sub-index {entry.subindex}", entry.where)
+
+
+def _parameter_name(name: str, designation: str, where: Where) -> str:
+    """``name`` as ParameterName; ``designation`` goes before a name that readers would take for a number."""
+    plain = _plain(name, where)
+    if _NUMBER_LIKE.fullmatch(plain):
+        plain = f"{designation} {plain}"
+    if len(plain) > _LONGEST_NAME:
+        raise EmitError("object-value", where, f"a name in an EDS has at most {_LONGEST_NAME} characters")
+    return plain
+
+
+def _claim_names(dictionary: ObjectDictionary, file_name: str) -> None:
+    """Names of objects differ in a file, names of sub-indexes in an object: readers look them up by name."""
+    objects = Scope(f"objects of {file_name}")
+    for entry in dictionary.objects:
+        objects.add(_object_name(entry), entry.where)
+        values = Scope(f"sub-indexes of {entry.designation} in {file_name}")
+        for value in entry.entries:
+            values.add(_entry_name(value), value.where)
+
+
+# Head of the file
+
+
+def _file_name(dictionary: ObjectDictionary) -> str:
+    parts = (dictionary.device.order_code, dictionary.slot or "", dictionary.product.label)
+    return "_".join(word for part in parts for word in _WORD.findall(_plain(part, dictionary.device.where))) + ".eds"
+
+
+def _file_info(model: Model, dictionary: ObjectDictionary, file_name: str) -> FileInfo:
+    device = dictionary.device
+    version, revision, *_ = model.version.split(".")
+    year, month, day = model.date.split("-")
+    slot = f" in slot {dictionary.slot}" if dictionary.slot else ""
+    product = f", {dictionary.product.label}" if dictionary.product.label else ""
+    return FileInfo(
+        name=file_name,
+        version=version,
+        revision=revision,
+        description=_plain(f"{device.manufacturer} {device.order_code}{slot}{product}", device.where),
+        date=f"{month}-{day}-{year}",
+        author=f"drivespec {VERSION}",
+    )
+
+
+def _device_info(dictionary: ObjectDictionary) -> DeviceInfo:
+    device, product = dictionary.device, dictionary.product
+    facts = dictionary.facts
+    return DeviceInfo(
+        vendor_name=_plain(device.manufacturer, device.where),
+        vendor_number=f"0x{product.vendor_number:08X}",
+        product_name=_plain(product.label or device.title, device.where),
+        product_number=f"0x{product.product_number:08X}",
+        revision_number=f"0x{product.revision_number:08X}",
+        order_code=_plain(device.order_code, device.where),
+        bit_rates=tuple((f"BaudRate_{rate}", "1" if rate in facts.baud_rates else "0") for rate in _BIT_RATES),
+        boot_up_master="1" if facts.boot_up_master else "0",
+        granularity=str(facts.granularity),
+        rpdos=len(dictionary.within(RPDO_PARAMETERS)),
+        tpdos=len(dictionary.within(TPDO_PARAMETERS)),
+        assumed=_ASSUMED,
+    )
+
+
+# Comments
+
+
+def _comments(model: Model, dictionary: ObjectDictionary) -> list[str]:
+    texts = [*_origin(model, dictionary), *_assumed(dictionary), *_left_out(dictionary), *_errata(dictionary)]
+    texts += _sources(dictionary)
+    where = dictionary.device.where
+    return [line for text in texts for line in textwrap.wrap(_plain(text, where), _COMMENT_WIDTH)]
+
+
+def _origin(model: Model, dictionary: ObjectDictionary) -> Iterator[str]:
+    device, manual = dictionary.device, dictionary.device.manual
+    document = f", {manual.document}" if manual.document else ""
+    yield f"Generated by drivespec {VERSION} from {manual.title}, {manual.edition}{document}. Do not edit."
+    yield f"Specification {model.version} of {model.date}."
+    yield f"This is not a file of {device.manufacturer}; its facts are those of the manual and the standards it names."
+
+
+def _assumed(dictionary: ObjectDictionary) -> Iterator[str]:
+    if dictionary.product.unknown:
+        yield f"Assumed, as the manual gives no figure: 0 as {', '.join(dictionary.product.unknown)}."
+    yield f"Assumed, as the manual says nothing: {', '.join(f'{key} {value}' for key, value in _ASSUMED.items())}."
+    if _remarked(dictionary, Remark.COUNT_ASSUMED):
+        yield "Assumed where none is printed: sub-index 0, read-only, holds the number of the last sub-index."
+    defaults: dict[str, list[str]] = {}
+    for label, entry in _remarked(dictionary, Remark.DEFAULT_ASSUMED):
+        defaults.setdefault(_default(entry), []).append(label)
+    for default, labels in defaults.items():
+        yield f"Assumed, as none is printed and tools need one: default {default} of {', '.join(labels)}."
+
+
+def _left_out(dictionary: ObjectDictionary) -> Iterator[str]:
+    rates = [str(rate) for rate in dictionary.facts.baud_rates if rate not in _BIT_RATES]
+    if rates:
+        yield f"Left out, as DeviceInfo has no key for them: bit rates of {', '.join(rates)} kbit/s."
+    refused: dict[int, list[str]] = {}
+    for entry in dictionary.objects:
+        for subindex, abort in entry.refused:
+            refused.setdefault(abort, []).append(f"{entry.designation}/{subindex}")
+    for abort, labels in refused.items():
+        yield f"Left out, as the device refuses any access with abort code 0x{abort:08X}: {', '.join(labels)}."
+    cut = [label for label, _ in _remarked(dictionary, Remark.LIMITS_CUT)]
+    if cut:
+        yield f"Limits are those of the data type, as the printed range is wider: {', '.join(cut)}."
+    outside = [label for label, _ in _remarked(dictionary, Remark.LIMITS_LEFT_OUT)]
+    if outside:
+        yield f"Left out, as the printed default lies outside of them: limits of {', '.join(outside)}."
+
+
+def _remarked(dictionary: ObjectDictionary, remark: Remark) -> list[tuple[str, Entry]]:
+    """Entries with the remark, each with its designation."""
+    return [
+        (entry.designation if entry.object_type == "VAR" else f"{entry.designation}/{value.subindex}", value)
+        for entry in dictionary.objects
+        for value in entry.entries
+        if remark in value.remarks
+    ]
+
+
+def _errata(dictionary: ObjectDictionary) -> Iterator[str]:
+    concerned: dict[str, list[str]] = {}
+    for entry in sorted(dictionary.objects, key=lambda entry: entry.designation):
+        for name in entry.errata:
+            concerned.setdefault(name, []).append(entry.designation)
+    for erratum in dictionary.device.errata:
+        if erratum.id in concerned:
+            printed = erratum.printed_text or " / ".join(place.printed for place in erratum.places)
+            yield (
+                f"Erratum {erratum.id}: printed {printed}, used {erratum.used_text}, "
+                f"concerns {', '.join(concerned[erratum.id])}."
+            )
+
+
+def _sources(dictionary: ObjectDictionary) -> Iterator[str]:
+    """Where the facts of each object are printed, one text for each page."""
+    pages: dict[Cite, list[str]] = {}
+    for entry in sorted(dictionary.objects, key=lambda entry: entry.designation):
+        for cite in entry.cites:
+            pages.setdefault(cite, []).append(entry.designation)
+    for cite, designations in pages.items():
+        page = "" if cite.page is None else f" p. {cite.page}"
+        yield f"{cite.manual}, {cite.chapter}{page}: {', '.join(designations)}."
+
+
+# Text
+
+
+def _plain(text: str, where: Where) -> str:
+    """``text`` in printable ASCII without the characters that readers of EDS files take for syntax.
+
+    Raises:
+        EmitError: A character has no counterpart in ASCII.
+    """
+    if _PLAIN.fullmatch(text):
+        return text
+    letters = unicodedata.normalize("NFKD", text.translate(_REPLACED))
+    plain = " ".join("".join(letter for letter in letters if not unicodedata.combining(letter)).split())
+    if plain and not _PLAIN.fullmatch(plain):
+        raise EmitError("not-ascii", where, f"'{text}' has a character that an EDS cannot hold")
+    return plain
