@@ -81,11 +81,12 @@ class Scope:
         """Begin a scope; ``title`` names it in messages ("constants of e94aycca.h")."""
         self._title = title
         self._names: dict[str, Where] = {}
+        self._count = 0
 
     def add(self, name: str, where: Where) -> str:
         """Claim ``name`` for the fact at ``where`` and return it."""
         first = self._names.setdefault(name, where)
-        if first != where:
+        if len(self._names) == self._count:
             raise EmitError(
                 "name-collision",
                 where,
@@ -93,4 +94,5 @@ class Scope:
                 "give the two entries names that differ in more than case and punctuation",
                 first,
             )
+        self._count += 1
         return name

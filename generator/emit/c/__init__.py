@@ -1,0 +1,57 @@
+"""C headers (C99, valid C++17): constants of every device, its records on demand, self-tests.
+
+``include/drivespec/drivespec.h`` holds the types of the records and the facts that devices share, ``<device>.h`` the
+constants of a device, ``<device>_tables.h`` its records.  ``test/<header>_selftest.c`` prints every constant and every
+field of every record as ``NAME=value`` and tries the lookups.
+"""
+
+from generator.emit.base import Output, Target
+from generator.emit.c.common import common_header
+from generator.emit.c.device import device_header
+from generator.emit.c.tables import Tables, device_tables
+from generator.emit.c.writer import Header, Names
+from generator.emit.environment import render as render_template
+from generator.model import Model
+
+__all__ = ["TARGET", "render"]
+
+_INCLUDE = "include/drivespec"
+
+
+def render(model: Model) -> dict[str, Output]:
+    """Headers and self-tests of all devices.
+
+    Raises:
+        EmitError: Rule "name-collision", when two facts would get one name.
+    """
+    names = Names()
+    common = common_header(model, names)
+    files = {
+        f"{_INCLUDE}/{common.file}": _ascii("c/drivespec.h.j2", header=common),
+        "test/drivespec_selftest.c": _selftest(common, None),
+    }
+    for device in model.devices:
+        header = device_header(model, device, names)
+        tables = device_tables(model, device, names)
+        files[f"{_INCLUDE}/{header.file}"] = _ascii("c/device.h.j2", header=header)
+        files[f"{_INCLUDE}/{tables.file}"] = _ascii("c/tables.h.j2", tables=tables)
+        files[f"test/{device.id}_selftest.c"] = _selftest(header, tables)
+    return files
+
+
+def _selftest(header: Header, tables: Tables | None) -> Output:
+    constants = tuple(header.constants)
+    return _ascii(
+        "c/selftest.c.j2",
+        header=header,
+        tables=tables,
+        numbers=[constant.name for constant in constants if not constant.is_text],
+        texts=[constant.name for constant in constants if constant.is_text],
+    )
+
+
+def _ascii(template: str, **view: object) -> Output:
+    return Output(render_template(template, **view), encoding="ascii")
+
+
+TARGET = Target("c", render)

@@ -1,0 +1,109 @@
+"""drivespec.h: what all devices share, the base drives and the predefined connection set."""
+
+from collections.abc import Iterator, Sequence
+
+from generator.emit.c.prose import cited, provenance
+from generator.emit.c.writer import ACCESS_FLAGS, Header, Names, Section, Writer
+from generator.emit.names import field_names
+from generator.model import DataType, Drive, DriveCommand, DriveModule, Manual, Model, Option, Response, Where
+from generator.naming import screaming
+
+ERROR_KINDS = ("device", "emergency", "sdo_abort", "dpv0", "dpv1", "gci")
+"""Kinds of error numbers by their value in the records; part of the interface, so append only."""
+
+RECORD_FLAGS = ("range", "default", "default_base")
+"""What a record can lack, from bit 0 on; part of the interface, so append only."""
+
+NO_RESPONSE = 0xFF
+"""Response of an error record where none is printed."""
+
+_HERE = Where("drivespec.h", 1, 1)
+"""Place of the constants that are not of spec."""
+
+
+def common_header(model: Model, names: Names) -> Header:
+    """View of drivespec.h."""
+    guard = names.claim("DRIVESPEC_DRIVESPEC_H", _HERE)
+    sections = [*_interface(names)]
+    sections += [section for drive in model.drives for section in _drive(drive, names)]
+    if model.cob_ids:
+        sections.append(_connection_set(model, names))
+    makers = sorted({drive.manufacturer for drive in model.drives})
+    notes = provenance(model, _manuals(model), makers)
+    return Header("drivespec.h", guard, "Types and facts that several drives share.", notes, tuple(sections))
+
+
+def drive_prefix(drive: Drive) -> str:
+    """How the names of a base drive's constants begin."""
+    return screaming(drive.id)
+
+
+def _manuals(model: Model) -> list[Manual]:
+    """The manuals that the shared facts cite."""
+    cites = [cob_id.cite for cob_id in model.cob_ids]
+    for drive in model.drives:
+        cites += [*drive.index_base_cites, drive.error_fields_cite, *(entry.cite for entry in drive.responses)]
+        cites += [*(entry.cite for entry in drive.modules), *(entry.cite for entry in drive.commands)]
+    used = {cite.manual for cite in cites}
+    return [manual for manual in model.manuals if manual.id in used]
+
+
+def _interface(names: Names) -> Iterator[Section]:
+    types = Writer(names, "DRIVESPEC_TYPE", "Data type", _HERE)
+    for data_type in DataType:
+        types.number(data_type.canopen_name, data_type.canopen_number, data_type.canopen_name, 16, hexadecimal=True)
+    yield types.section("Data types", ["Numbered as in CiA 301."])
+    yield _flags("DRIVESPEC_ACCESS", "Access flag", ACCESS_FLAGS, names).section("Access flags", [])
+    yield _flags("DRIVESPEC_HAS", "Record has", RECORD_FLAGS, names).section("What a record has", [])
+    kinds = Writer(names, "DRIVESPEC_ERROR", "Kind of error number", _HERE)
+    for value, kind in enumerate(ERROR_KINDS):
+        kinds.number(kind.upper(), value, kind, 8)
+    yield kinds.section("Kinds of error numbers", [])
+    responses = Writer(names, "DRIVESPEC_RESPONSE", "Response of an error record", _HERE)
+    responses.number("NOT_PRINTED", NO_RESPONSE, "none is printed", 8)
+    yield responses.section("Responses", ["The responses of a drive stand with the drive."])
+
+
+def _flags(prefix: str, title: str, flags: Sequence[str], names: Names) -> Writer:
+    writer = Writer(names, prefix, title, _HERE)
+    for bit, flag in enumerate(flags):
+        writer.number(flag.upper(), 1 << bit, flag, 16, hexadecimal=True)
+    return writer
+
+
+def _drive(drive: Drive, names: Names) -> Iterator[Section]:
+    prefix = drive_prefix(drive)
+    base = Writer(names, prefix, drive.title, drive.where)
+    base.number("INDEX_BASE", drive.index_base, "index of a code = this less the number of the code")
+    yield base.section(f"{drive.title}: index of codes", map(cited, drive.index_base_cites))
+    layout = Writer(names, f"{prefix}_ERROR", f"{drive.title}, error number", drive.where)
+    bit_fields = [field for _, field in drive.error_fields]
+    for field, name in zip(bit_fields, field_names(bit_fields), strict=True):
+        layout.number(f"{name.upper()}_MASK", field.mask, f"{field.label}, mask", 32, hexadecimal=True)
+        layout.number(f"{name.upper()}_SHIFT", field.low, f"{field.label}, lowest bit", 8)
+    cite = cited(drive.error_fields_cite, drive.error_fields_origin)
+    yield layout.section(f"{drive.title}: error number", [cite])
+    for word, title, entries in (
+        ("RESPONSE", "responses to errors", drive.responses),
+        ("MODULE", "module field of error numbers", drive.modules),
+        ("COMMAND", "device commands", drive.commands),
+    ):
+        yield _values(drive, word, title, entries, names)
+
+
+def _values(
+    drive: Drive, word: str, title: str, entries: Sequence[Response | DriveModule | DriveCommand], names: Names
+) -> Section:
+    writer = Writer(names, drive_prefix(drive), f"{drive.title}, {title}", drive.where)
+    cites = {entry.value: cited(entry.cite, entry.origin) for entry in entries}
+    writer.options(word, [Option(entry.value, entry.name) for entry in entries], DataType.UNSIGNED32, cites)
+    return writer.section(f"{drive.title}: {title}", [])
+
+
+def _connection_set(model: Model, names: Names) -> Section:
+    writer = Writer(names, "DRIVESPEC_COB_ID", "COB-ID less the node address", _HERE)
+    for entry in model.cob_ids:
+        objects = f" ({', '.join(map(str, entry.objects))})" if entry.objects else ""
+        writer.number(screaming(entry.name), entry.base, f"{entry.name}{objects}", 16, hexadecimal=True)
+    cites = dict.fromkeys(cited(entry.cite) for entry in model.cob_ids)
+    return writer.section("Predefined connection set", cites)

@@ -1,0 +1,136 @@
+"""<device>_tables.h: the records of one device, and the numbers that its self-test prints of them."""
+
+from dataclasses import dataclass
+
+from generator.emit.c.common import ERROR_KINDS, NO_RESPONSE
+from generator.emit.c.device import DefaultRun, access_flags, code_defaults, device_prefix, error_mask
+from generator.emit.c.prose import provenance
+from generator.emit.c.syntax import comment, integer, string
+from generator.emit.c.writer import Names, access, wire_limits
+from generator.model import Code, Device, ErrorEntry, Model, NodeRelative
+
+
+@dataclass(frozen=True, slots=True)
+class Tables:
+    """Records of a device, each the text between its braces; ``stem`` and ``prefix`` begin the names."""
+
+    file: str
+    guard: str
+    device_file: str
+    brief: str
+    notes: tuple[str, ...]
+    stem: str
+    prefix: str
+    masked: bool
+    codes: tuple[str, ...]
+    defaults: tuple[str, ...]
+    errors: tuple[str, ...]
+    baud_rates: str
+
+
+def device_tables(model: Model, device: Device, names: Names) -> Tables:
+    """View of the tables of a device."""
+    prefix, stem = device_prefix(device), device_prefix(device).lower()
+    for name in ("codes", "defaults", "errors", "baud_rates", "find_code", "find_default", "find_error"):
+        names.claim(f"{stem}_{name}", device.where)
+    return Tables(
+        file=f"{device.id}_tables.h",
+        guard=names.claim(f"DRIVESPEC_{prefix}_TABLES_H", device.where),
+        device_file=f"{device.id}.h",
+        brief=comment(f"Records of the {device.title}; each file that includes this has its own."),
+        notes=provenance(model, [device.manual], [device.manufacturer]),
+        stem=stem,
+        prefix=prefix,
+        masked=bool(error_mask(device)),
+        codes=tuple(_code(code) for code in device.codes),
+        defaults=tuple(_run(code, run) for code in device.codes for run in code_defaults(code) if not run.shared),
+        errors=tuple(_error(error, device) for error in sorted_errors(device)),
+        baud_rates=", ".join(integer(rate, 16) for rate in device.canopen.baud_rates) if device.canopen else "",
+    )
+
+
+def sorted_errors(device: Device) -> list[ErrorEntry]:
+    """Errors in the order that the lookup needs."""
+    return sorted(device.errors, key=lambda error: (ERROR_KINDS.index(error.kind), error.last, error.number))
+
+
+def response_value(error: ErrorEntry, device: Device) -> int:
+    """Number of the preset response in the drive's list."""
+    if device.drive and error.response is not None:
+        for response in device.drive.responses:
+            if error.response in (response.name, *response.aliases):
+                return response.value
+    return NO_RESPONSE
+
+
+def _code(code: Code) -> str:
+    shared = [run for run in code_defaults(code) if run.shared]
+    default = shared[0] if shared else None
+    low, high = wire_limits(code.range, code.scaling or 1) if code.range else (0, 0)
+    return ", ".join(
+        (
+            integer(low, 64, signed=True),
+            integer(high, 64, signed=True),
+            *_default(default),
+            string(code.name),
+            integer(code.scaling or 0, 32),
+            integer(code.number, 16),
+            integer(code.index, 16, hexadecimal=True),
+            access(access_flags(code)),
+            f"DRIVESPEC_TYPE_{code.data_type.canopen_name}",
+            _has(code.range is not None, default),
+            integer(len(code.subcodes), 8),
+            integer(code.highest_subcode, 8),
+        )
+    )
+
+
+def _run(code: Code, run: DefaultRun) -> str:
+    return ", ".join(
+        (
+            *_default(run),
+            integer(code.number, 16),
+            _has(False, run),
+            integer(run.first, 8),
+            integer(run.last, 8),
+        )
+    )
+
+
+def _default(run: DefaultRun | None) -> tuple[str, str, str]:
+    """Members ``default_value``, ``default_text`` and ``default_base``."""
+    value = run.value if run else None
+    base = _base(run)
+    return (
+        integer(value if isinstance(value, int) else 0, 64, signed=True),
+        string(value) if isinstance(value, str) else "NULL",
+        integer(base.base if base else 0, 32, hexadecimal=True),
+    )
+
+
+def _base(run: DefaultRun | None) -> NodeRelative | None:
+    if run is None:
+        return None
+    return run.value if isinstance(run.value, NodeRelative) else run.follows
+
+
+def _has(has_range: bool, run: DefaultRun | None) -> str:
+    """Flags of what the record holds."""
+    flags = [
+        *["DRIVESPEC_HAS_RANGE"] * has_range,
+        *["DRIVESPEC_HAS_DEFAULT"] * (run is not None and isinstance(run.value, (int, str))),
+        *["DRIVESPEC_HAS_DEFAULT_BASE"] * (_base(run) is not None),
+    ]
+    return " | ".join(flags) or "0u"
+
+
+def _error(error: ErrorEntry, device: Device) -> str:
+    return ", ".join(
+        (
+            string(error.name),
+            integer(error.number, 32, hexadecimal=True),
+            integer(error.last, 32, hexadecimal=True),
+            f"DRIVESPEC_ERROR_{error.kind.upper()}",
+            integer(response_value(error, device), 8),
+        )
+    )
