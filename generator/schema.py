@@ -88,14 +88,14 @@ def _report(error: Any, data: Map, name: str, problems: Problems) -> None:
 
 
 def _report_unknown_keys(error: Any, data: Map, name: str, problems: Problems) -> None:
-    patterns = [re.compile(p) for p in error.schema.get("patternProperties", {})]
+    patterns: list[re.Pattern[str]] = [re.compile(p) for p in error.schema.get("patternProperties", {})]
     legal: list[str] = list(error.schema.get("properties", {}))
     path = _path(error)
     for key in error.instance:
         if key in legal or any(p.search(key) for p in patterns):
             continue
         line, column = error.instance.keys_at[key]
-        hint = suggestion(key, legal, "keys") if legal else f"keys have the form {patterns[0].pattern}"
+        hint = suggestion(str(key), legal, "keys") if legal else f"keys have the form {patterns[0].pattern}"
         problems.add("key-unknown", Where(name, line, column, path), f"'{key}' is not a key here", hint=hint)
 
 

@@ -245,7 +245,7 @@ def expected_objects(device: Device, name: str) -> Values:
         if entry.object_type != "VAR":
             found |= part_names(prefix, [(sub.number, sub.name) for sub in entry.subindexes])
         by_number = {sub.number: sub for sub in entry.subindexes}
-        blank = replace(next(iter(by_number.values())), errata=(), codes=(), detail_codes=()) if by_number else None
+        blank = replace(next(iter(by_number.values())), errata=(), codes=(), printed_codes=()) if by_number else None
         facts = {
             number: blank
             and replace(
@@ -257,7 +257,7 @@ def expected_objects(device: Device, name: str) -> Values:
                 where=blank.where,
                 errata=(),
                 codes=(),
-                detail_codes=(),
+                printed_codes=(),
             )
             for number, sub in by_number.items()
         }

@@ -60,7 +60,7 @@ def attribute_rows(model: Model, device: Device) -> Iterator[Finding]:
             ("structure", row.structure, "A" if code.is_array else "E"),
             ("count", row.count, code.highest_subcode or 1),
             ("type", row.type_name, code.type_name),
-            ("factor", row.factor, code.scaling),
+            ("factor", "-" if row.factor is None else row.factor, code.scaling),
             ("access", row.access, access),
         )
         for what, printed, expected in pairs:
@@ -185,7 +185,7 @@ def mirrors(model: Model, device: Device) -> Iterator[Finding]:
                 )
                 continue
             back = {c.number for s in entry.subindexes for c in s.codes if _concerns(ref, s.number)}
-            if code.number not in back and code.twin_of not in back:
+            if code.number not in back:
                 yield Finding(
                     rule="mirror",
                     subject=code.ref,

@@ -125,7 +125,7 @@ def code_references(model: Model, device: Device) -> Iterator[Finding]:
     """Rules reference and slot-twin: codes that the overview names exist, one for each slot, the same code."""
     codes = {c.number: c for c in device.codes}
     for _, sub, ref in _subs(device):
-        for place, refs in (("overview", sub.codes), ("detail", sub.detail_codes)):
+        for place, refs in sub.printed_codes:
             for code in refs:
                 yield from _unknown_code(ref, sub, place, code, device)
             named = [codes[r.number] for r in refs if r.number in codes]

@@ -20,7 +20,7 @@ from generator.model import (
 from generator.notation import attributes, node_relative, numbers, references, value_range
 from generator.tree import Node
 
-_NEEDED = ("name", "type", "access")
+_NEEDED = ("name", "type")
 BASE = "base"
 """Name under which ``printed`` holds what stands once, outside any slot."""
 
@@ -73,7 +73,8 @@ def _expand(node: Node, frame: Frame, errata: "ErrataIndex") -> Iterator[Code]:
     entry = _merge(node, frame)
     if entry is None:
         return
-    missing = [key for key in _NEEDED if key not in entry.of(key)]
+    needed = _NEEDED if entry.of("internal").get("internal") else (*_NEEDED, "access")
+    missing = [key for key in needed if key not in entry.of(key)]
     if missing:
         node.problems.add(
             "key-absent", node.where, f"the code lacks {', '.join(missing)}", hint=f"add '{missing[0]}: ...'"
@@ -154,7 +155,7 @@ def _code(
         data_type=data_type,
         length=entry.of("length").get("length"),
         access=Access(
-            "r" in access.get("access"), "w" in access.get("access"), entry.of("conditions").texts("conditions")
+            "r" in access.get("access", ""), "w" in access.get("access", ""), entry.of("conditions").texts("conditions")
         ),
         scaling=entry.of("scaling").get("scaling"),
         range=entry.of("range").read("range", value_range),

@@ -127,7 +127,9 @@ def device(
         canopen=_canopen(root),
         attributes=root.cite("attributes") if "attributes" in root else None,
         codes=codes,
-        objects=object_table.objects(files["objects"].root, standard, index) if "objects" in files else (),
+        objects=object_table.objects(files["objects"].root, object_table.Frame(standard, slots, index))
+        if "objects" in files
+        else (),
         errors=error_table.errors(files["errors"].root, error_frame) if "errors" in files else (),
         indicators=panel.indicators(roots["indicators"], index) if "indicators" in roots else (),
         switches=panel.switches(roots["switches"], index) if "switches" in roots else (),

@@ -1,6 +1,7 @@
 """Objects: runs expanded, types and accesses of the standard taken where the standard defines them."""
 
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 
 from generator.elaborate.codes import ErrataIndex
 from generator.elaborate.common import OBJECT_TYPES, bits, default, fields, fill, options, origin, runs
@@ -12,6 +13,7 @@ from generator.model import (
     DictionaryObject,
     ObjectRef,
     Range,
+    Slot,
     StandardObject,
     StandardSubIndex,
     SubIndex,
@@ -22,11 +24,20 @@ from generator.tree import Node
 PROFIDRIVE = "P-"
 
 
-def objects(root: Node, standard: Sequence[StandardObject], errata: ErrataIndex) -> tuple[DictionaryObject, ...]:
+@dataclass(frozen=True, slots=True)
+class Frame:
+    """What an object needs to know: the standard, the slots of the device, the ledger."""
+
+    standard: Sequence[StandardObject]
+    slots: Sequence[Slot]
+    errata: ErrataIndex
+
+
+def objects(root: Node, frame: Frame) -> tuple[DictionaryObject, ...]:
     """Objects of a device's objects.yaml, by index."""
     found: dict[tuple[str, int], DictionaryObject] = {}
     for node in root.items("objects"):
-        for entry in _expand(node, standard, errata):
+        for entry in _expand(node, frame):
             key = (entry.kind, entry.index)
             if key in found:
                 node.problems.add(
@@ -39,12 +50,12 @@ def objects(root: Node, standard: Sequence[StandardObject], errata: ErrataIndex)
     return tuple(found[key] for key in sorted(found))
 
 
-def _expand(node: Node, standard: Sequence[StandardObject], errata: ErrataIndex) -> Iterator[DictionaryObject]:
+def _expand(node: Node, frame: Frame) -> Iterator[DictionaryObject]:
     first, last = object_run(node)
     count = last - first + 1
     for index in range(first, last + 1):
         place = index - first
-        known = next((s for s in standard if s.first <= index <= s.last), None)
+        known = next((s for s in frame.standard if s.first <= index <= s.last), None)
         kind = "profidrive" if str(node.get("index")).startswith(PROFIDRIVE) else "canopen"
         object_type = known.object_type if known and kind == "canopen" else node.get("object_type")
         if object_type is None:
@@ -61,12 +72,12 @@ def _expand(node: Node, standard: Sequence[StandardObject], errata: ErrataIndex)
             name=fill(str(node.get("name")), node, "name", {"n": place + 1}),
             object_type=str(object_type),
             subindexes=tuple(
-                _subindexes(node, ObjectRef(index), place, count, known if kind == "canopen" else None, errata)
+                _subindexes(node, ObjectRef(index), place, count, known if kind == "canopen" else None, frame)
             ),
             description=str(node.get("description", "")).strip(),
             origin=origin(node),
             cite=_cite(node, place, count),
-            errata=errata.of(ObjectRef(index)),
+            errata=frame.errata.of(ObjectRef(index)),
             where=node.at("index"),
         )
 
@@ -90,7 +101,7 @@ def _fits(node: Node, key: str, values: Sequence[object], count: int) -> bool:
 
 
 def _subindexes(
-    node: Node, ref: ObjectRef, place: int, count: int, known: StandardObject | None, errata: ErrataIndex
+    node: Node, ref: ObjectRef, place: int, count: int, known: StandardObject | None, frame: Frame
 ) -> Iterator[SubIndex]:
     parent = node.child("subindexes")
     assert parent is not None
@@ -98,17 +109,18 @@ def _subindexes(
         child = parent.child(key)
         assert child is not None
         for number in range(low, high + 1):
-            yield _subindex(child, ObjectRef(ref.index, number), place, count, known, errata)
+            yield _subindex(child, ObjectRef(ref.index, number), place, count, known, frame)
 
 
 def _subindex(
-    node: Node, ref: ObjectRef, place: int, count: int, known: StandardObject | None, errata: ErrataIndex
+    node: Node, ref: ObjectRef, place: int, count: int, known: StandardObject | None, frame: Frame
 ) -> SubIndex:
     assert ref.subindex is not None
     values = {"n": place + 1, "k": ref.subindex}
     printed_type = OBJECT_TYPES[str(node.get("type"))]
     printed_access = str(node.get("access"))
     norm = known.subindex(ref.subindex) if known else None
+    overview, detail = _codes(node, "codes", values), _codes(node, "detail_codes", values)
     value = node.get("default")
     if isinstance(value, list):
         value = value[place] if _fits(node, "default", value, count) else None
@@ -124,16 +136,25 @@ def _subindex(
         options=options(node, "selection"),
         bits=bits(node),
         fields=fields(node),
-        codes=_codes(node, "codes", values),
-        detail_codes=_codes(node, "detail_codes", values),
+        codes=tuple(dict.fromkeys(twin for ref in overview for twin in twins(ref, frame.slots))),
+        printed_codes=(("overview", overview), ("detail", detail)) if detail else (("overview", overview),),
         signature=node.get("signature"),
         pdo_mapping=bool(node.get("pdo_mapping", norm.pdo_mapping if norm else False)),
         unused=bool(node.get("unused", False)),
         abort=node.get("abort"),
         description=str(node.get("description", "")).strip(),
-        errata=errata.of(ref),
+        errata=frame.errata.of(ref),
         where=node.where,
     )
+
+
+def twins(ref: CodeRef, slots: Sequence[Slot]) -> tuple[CodeRef, ...]:
+    """The code that ``ref`` names in every slot; a code of no slot is its own only twin."""
+    for slot in slots:
+        if slot.first_code <= ref.number <= slot.last_code:
+            first = ref.number - slot.code_offset
+            return tuple(CodeRef(first + other.code_offset, ref.subcode) for other in slots)
+    return (ref,)
 
 
 def _access(norm: StandardSubIndex | None, printed: str) -> str:

@@ -8,7 +8,7 @@ from generator.model import Model, Where
 
 @dataclass(frozen=True, slots=True)
 class Output:
-    """Text of one artifact with ``\\n`` line ends, and how it is written: line ends and encoding of the file."""
+    """Text of one artifact, its lines ended by a line feed, and how it is written: line ends and encoding."""
 
     text: str
     newline: str = "\n"

@@ -9,7 +9,11 @@ from generator.model.values import Bit, BitField, DataType, Default, NodeRelativ
 
 @dataclass(frozen=True, slots=True)
 class Access:
-    """Ticked access boxes: ``conditions`` names the others ("cinh", "plc_stop", "no_transfer", ...)."""
+    """Ticked access boxes.
+
+    ``conditions`` names the others ("cinh", "plc_stop", "no_transfer", ...).  Device-internal codes whose boxes are not
+    printed are neither readable nor writable.
+    """
 
     read: bool
     write: bool
@@ -35,14 +39,15 @@ class PrintedIndex:
 class AttributeRow:
     """Row of the table of attributes, as printed.
 
-    ``structure``: "A" (array) or "E" (single variable).  ``count``: elements.  ``access``: "R" or "RW", with "CINH".
+    ``structure``: "A" (array) or "E" (single variable).  ``count``: elements.  ``factor``: ``None`` where a
+    dash is printed.  ``access``: "R" or "RW", with "CINH".
     ``name``: ``None`` where it is that of the code's own table.
     """
 
     structure: str
     count: int
     type_name: str
-    factor: int
+    factor: int | None
     access: str
     name: str | None
     page: int | None

@@ -13,7 +13,7 @@ class SubIndex:
 
     ``data_type`` and ``access`` are those used; ``printed_type`` and ``printed_access`` those of the manual,
     which differ where the manual contradicts the standard.  ``codes`` are the codes that mirror it, one for
-    each slot.  ``abort``: the abort code that any access returns (the entry does not exist on the bus then).
+    each slot; ``printed_codes`` what each place ("overview", "detail") prints of them.  ``abort``: the abort code that any access returns (the entry does not exist on the bus then).
     ``signature``: ASCII text that must be written.
     """
 
@@ -29,7 +29,7 @@ class SubIndex:
     bits: tuple[Bit, ...]
     fields: tuple[BitField, ...]
     codes: tuple[CodeRef, ...]
-    detail_codes: tuple[CodeRef, ...]
+    printed_codes: tuple[tuple[str, tuple[CodeRef, ...]], ...]
     signature: str | None
     pdo_mapping: bool
     unused: bool

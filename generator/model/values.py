@@ -14,6 +14,7 @@ class DataType(Enum):
     UNSIGNED8 = ("UNSIGNED8", 0x0005, 8, False)
     UNSIGNED16 = ("UNSIGNED16", 0x0006, 16, False)
     UNSIGNED32 = ("UNSIGNED32", 0x0007, 32, False)
+    UNSIGNED64 = ("UNSIGNED64", 0x001B, 64, False)
     INTEGER8 = ("INTEGER8", 0x0002, 8, True)
     INTEGER16 = ("INTEGER16", 0x0003, 16, True)
     INTEGER32 = ("INTEGER32", 0x0004, 32, True)

@@ -199,7 +199,7 @@ class Attributes:
     structure: str
     count: int
     type_name: str
-    factor: int
+    factor: int | None
     access: str
 
 
@@ -212,14 +212,14 @@ def attributes(text: str) -> Attributes:
     decimal, hexadecimal = found["INDEX"]
     if not decimal.isdigit():
         raise NotationError(f"'{decimal}' is not a decimal number", 0, _EXAMPLES["attributes"])
-    count, factor = found["INT"]
+    count, *factor = found["INT"]
     return Attributes(
         decimal=int(decimal),
         hexadecimal=int(hexadecimal, 16),
         structure=found["STRUCTURE"][0],
         count=int(count),
         type_name=found["TYPE"][0],
-        factor=int(factor),
+        factor=int(factor[0]) if factor else None,
         access=found["ACCESS"][0],
     )
 
