@@ -1,7 +1,7 @@
 """Validation against the JSON Schemas of spec/schema, with every violation at its place."""
 
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -101,9 +101,8 @@ def _report_unknown_keys(error: Any, data: Map, name: str, problems: Problems) -
 
 def _expected(error: Any) -> str:
     if error.validator == "type":
-        kinds = error.validator_value if isinstance(error.validator_value, Sequence) else [error.validator_value]
-        kinds = [error.validator_value] if isinstance(error.validator_value, str) else kinds
-        return " or ".join(_TYPES.get(k, k) for k in kinds)
+        kinds: list[str] = [error.validator_value] if isinstance(error.validator_value, str) else error.validator_value
+        return " or ".join(_TYPES.get(kind, kind) for kind in kinds)
     if error.validator == "enum":
         return "one of " + ", ".join(str(v) for v in error.validator_value)
     if error.validator == "const":

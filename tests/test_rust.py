@@ -718,15 +718,7 @@ def test_refuses_two_entries_for_one_error_number(model: Model) -> None:
     errors = (*device.errors, replace(device.errors[2], number=3, last=3, name="Within the run"))
     with pytest.raises(EmitError) as caught:
         TARGET.render(replace(model, devices=(replace(device, errors=errors),)))
-    assert caught.value.rule == "rust-overlap"
-
-
-def test_refuses_codes_that_break_the_rule_of_the_index(model: Model) -> None:
-    device = edge_model(model).devices[2]
-    codes = (*device.codes[:-1], replace(device.codes[-1], index=1))
-    with pytest.raises(EmitError) as caught:
-        TARGET.render(replace(model, devices=(replace(device, codes=codes),)))
-    assert caught.value.rule == "rust-index"
+    assert caught.value.rule == "error-overlap"
 
 
 @pytest.mark.parametrize("labels", [("Off", "off!"), ("Mask", "MASK")], ids=["punctuation", "case"])
