@@ -381,9 +381,10 @@ def test_device_facts(pairs: list[tuple[Any, Device]]) -> None:
 
 def test_public_names_are_those_of_the_facts(pairs: list[tuple[Any, Device]]) -> None:
     """A constant for each code, object, sub-index and error, the enums that the records name, and nothing else."""
-    api = {"CODES", "DEVICE", "ERRATA", "ERRORS", "OBJECTS", "code", "code_by_name", "codes_at", "error", "errors_at",
-           "object_at"}  # fmt: skip
+    always = {"CODES", "DEVICE", "ERRATA", "ERRORS", "OBJECTS", "code", "code_by_name", "codes_at", "error",
+              "errors_at", "object_at"}  # fmt: skip
     for module, device in pairs:
+        api = set(always)
         constants: dict[str, Any] = {}
         for code in device.codes:
             constants[names.code_name(code).upper()] = code.number
@@ -454,8 +455,9 @@ def test_code_lookups(pairs: list[tuple[Any, Device]]) -> None:
         unknown = max((code.number for code in device.codes), default=0) + 1
         with pytest.raises(LookupError, match=f"no code C{unknown:05d}"):
             module.code(unknown)
-        with pytest.raises(LookupError, match="no slot 'X9'"):
-            module.code(device.codes[0].number, "X9")
+        for code in device.codes[:1]:
+            with pytest.raises(LookupError, match="no slot 'X9'"):
+                module.code(code.number, "X9")
         with pytest.raises(LookupError, match="no code 'nonsense'"):
             module.code_by_name("nonsense")
         if device.drive is not None:
@@ -500,7 +502,7 @@ def test_error_lookups(pairs: list[tuple[Any, Device]]) -> None:
                 if len(same) == 1:
                     assert module.error(number, error.kind) == found[0]
                     assert number in found[0]
-                    if error.adjustable_in:
+                    if len(error.adjustable_in) == error.count:
                         assert str(found[0].code_for(number)) == str(error.adjustable_in[number - error.number])
                     else:
                         assert found[0].code_for(number) is None

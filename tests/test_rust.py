@@ -1,5 +1,6 @@
 """The Rust crate: built, linted, documented and run by cargo, and compared with the model fact by fact."""
 
+import json
 import os
 import re
 import shutil
@@ -380,7 +381,10 @@ def code_probes(device: Device) -> Iterator[tuple[str, str]]:
         for neighbour in {number - 1, number + 1} - codes.keys():
             yield f"{table}.get({neighbour}).is_none()", "true"
         for sub in code.subcodes[:1]:
-            yield f"{table}.get({number}).unwrap().subcode({sub.number}).unwrap().name", f'"{sub.name}"'
+            yield (
+                f"{table}.get({number}).unwrap().subcode({sub.number}).unwrap().name",
+                json.dumps(sub.name, ensure_ascii=False),
+            )
             yield f"{table}.get({number}).unwrap().subcode({code.highest_subcode + 1})", "None"
         if code.options and code.twin_of == number:
             yield from option_probes(f"{device.id}::selections::{pascal(names.code_name(code))}", code.options)

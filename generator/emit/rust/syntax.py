@@ -186,10 +186,14 @@ def _wrap(text: str, width: int, first: str, rest: str) -> list[str]:
     line = first + line
     lines: list[str] = []
     for word in others:
-        # A word that would begin a list stays behind the word before it.
-        if len(line) + 1 + len(word) > width and not _LIST_MARK.fullmatch(word):
+        if len(line) + 1 + len(word) <= width:
+            line = f"{line} {word}"
+        elif _LIST_MARK.fullmatch(word):
+            # A word that would begin a list takes the word before it along.
+            line, _, last = line.rpartition(" ")
+            lines.append(line)
+            line = f"{rest}{last} {word}"
+        else:
             lines.append(line)
             line = rest + word
-        else:
-            line = f"{line} {word}"
     return [*lines, line]

@@ -61,7 +61,9 @@ def code_points(code: Code, digits: int, links: str, subcodes: Iterable[str], er
     setting = _default(code.default, code.options, code, digits)
     place = f" ({_cite(code.default_cite)})" if code.default_cite else ""
     return [
-        f"Index 0x{code.index:04X} ({code.index}), type {code.type_name}, {_access(code.access)}",
+        ", ".join(
+            filter(None, (f"Index 0x{code.index:04X} ({code.index}), type {code.type_name}", _access(code.access)))
+        ),
         f"Range: {_range(code.range, digits)}" if code.range else "",
         f"Scaling factor: {code.scaling}" if code.scaling not in (None, 1) else "",
         f"Length: up to {code.length} bytes" if code.length is not None else "",
