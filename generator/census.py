@@ -5,7 +5,7 @@ from collections import Counter
 from collections.abc import Iterator
 
 from generator.emit.json import facts
-from generator.model import Model
+from generator.model import Device, Model
 
 
 def lines(model: Model) -> Iterator[str]:
@@ -26,6 +26,9 @@ def lines(model: Model) -> Iterator[str]:
             yield f"count {device.id} objects {kind} {count}"
         for kind, count in sorted(errors.items()):
             yield f"count {device.id} errors {kind} {count} entries, {numbers[kind]} numbers"
+        yield from _panel_counts(device)
+        for kind, count in sorted(Counter(e.kind for e in device.errata).items()):
+            yield f"count {device.id} errata {kind} {count}"
         yield f"count {device.id} errata {len(device.errata)}"
     yield ""
     for manual in sorted(model.manuals, key=lambda m: m.id):
@@ -34,6 +37,16 @@ def lines(model: Model) -> Iterator[str]:
         for chapter in manual.chapters:
             note = f": {chapter.note}" if chapter.note else ""
             yield f"coverage {manual.id} {chapter.number} {chapter.status or 'pending'} {chapter.title}{note}"
+
+
+def _panel_counts(device: Device) -> Iterator[str]:
+    yield f"count {device.id} indicators {sum(len(table.rows) for table in device.indicators)} rows"
+    for group in device.switches:
+        yield f"count {device.id} switches {group.id} {len(group.rows)} rows"
+    for table in device.tables:
+        yield f"count {device.id} table {table.id} {len(table.rows)} rows"
+    yield f"count {device.id} formulas {len(device.formulas)}"
+    yield f"count {device.id} telegrams {len(device.layouts)} layouts, {len(device.examples)} examples"
 
 
 _KEYS = ("code", "index", "subindex", "id", "number")

@@ -16,6 +16,8 @@ class Light(Enum):
     OFF = "off"
     ON = "on"
     FLICKER = "flicker"
+    ON_OR_FLICKER = "on_or_flicker"
+    """Lit steadily or flickering; the manual draws no line between the two."""
     BLINK = "blink"
     FLASH = "flash"
 
@@ -36,7 +38,9 @@ class Pattern:
 
     def overlaps(self, other: "Pattern") -> bool:
         """Whether an observer could take one for the other."""
-        return Light.ANY in (self.light, other.light) or self == other
+        lights = {self.light, other.light}
+        either = Light.ON_OR_FLICKER in lights and lights <= {Light.ON_OR_FLICKER, Light.ON, Light.FLICKER}
+        return Light.ANY in lights or self == other or (either and self.colour == other.colour)
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,0 +1,125 @@
+"""What pages are composed of: entries, and the facts, tables, lists and notes inside them.
+
+The blocks hold every string ready to be shown; templates only lay them out.
+"""
+
+from dataclasses import dataclass
+
+from generator.emit.html.text import Piece, Prose
+
+
+@dataclass(frozen=True, slots=True)
+class Fact:
+    """A label and what it labels."""
+
+    label: str
+    value: Prose
+
+
+@dataclass(frozen=True, slots=True)
+class Item:
+    """A key and its meaning: a value of a selection list, a bit, a number of a run; ``id`` is "" without anchor."""
+
+    key: Piece
+    meaning: Prose
+    id: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class ItemList:
+    """A titled list of keys and meanings."""
+
+    title: str
+    items: tuple[Item, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Bullets:
+    """A titled list of sentences."""
+
+    title: str
+    items: tuple[Prose, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Row:
+    """A row of a table, its first cell the row's head.
+
+    ``id`` and ``more_ids`` are anchors; ``remarks`` and ``lists`` stand below the cells.
+    """
+
+    cells: tuple[Prose, ...]
+    id: str = ""
+    more_ids: tuple[str, ...] = ()
+    remarks: tuple[Prose, ...] = ()
+    lists: tuple[ItemList, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Table:
+    """A table; ``kind`` is its class in the style sheet, ``caption`` "" where a heading says what it is."""
+
+    kind: str
+    head: tuple[str, ...]
+    rows: tuple[Row, ...]
+    caption: str = ""
+
+    @property
+    def columns_below(self) -> int:
+        """Over how many columns the remarks and lists of a row stretch: all but that of its head."""
+        return len(self.head) - 1
+
+
+@dataclass(frozen=True, slots=True)
+class Note:
+    """A ledger entry beside the fact that it concerns; ``slip`` marks those of the text dump alone."""
+
+    slip: bool
+    caption: Prose
+    statements: tuple[Prose, ...]
+    why: Prose
+
+
+@dataclass(frozen=True, slots=True)
+class Anchor:
+    """An id, and the number that stands there and links to itself."""
+
+    id: str
+    text: str
+
+
+@dataclass(frozen=True, slots=True)
+class Entry:
+    """A code, object, error or erratum.
+
+    ``anchors``: its number, in several slots one for each.  ``marks``: short words on where it is from.
+    ``related``: facts that lead elsewhere.  ``printed``: what each place prints, verbatim.
+    """
+
+    kind: str
+    anchors: tuple[Anchor, ...]
+    name: str
+    marks: tuple[str, ...]
+    lead: Prose
+    facts: tuple[Fact, ...]
+    tables: tuple[Table, ...]
+    lists: tuple[ItemList, ...] = ()
+    bullets: tuple[Bullets, ...] = ()
+    related: tuple[Fact, ...] = ()
+    notes: tuple[Note, ...] = ()
+    printed: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Group:
+    """Entries of one kind below one heading, with a table that lists them."""
+
+    id: str
+    title: str
+    overview: Table
+    entries: tuple[Entry, ...]
+
+
+def anchored(anchor: Anchor) -> Prose:
+    """The number of an anchor as a link to its place."""
+    return (Piece(anchor.text, f"#{anchor.id}"),)

@@ -1,0 +1,189 @@
+"""Error numbers as entries of the reference: one entry for the same error in every slot."""
+
+from collections.abc import Iterator, Sequence
+
+from generator.emit.html.blocks import Anchor, Bullets, Entry, Fact, Group, Item, ItemList, Row, Table, anchored
+from generator.emit.html.links import Links, error_id, error_text
+from generator.emit.html.notes import error_subject, notes
+from generator.emit.html.text import ELLIPSIS, NONE, Piece, Prose, joined, shown_origin, through
+from generator.model import Drive, ErrorEntry
+
+_KINDS = {
+    "device": "Device errors",
+    "emergency": "Emergency codes",
+    "sdo_abort": "SDO abort codes",
+    "dpv0": "PROFIBUS DP-V0 diagnosis",
+    "dpv1": "PROFIBUS DP-V1 errors",
+    "gci": "GCI errors",
+}
+_VARIANTS = ("Slot", "Number", "Decimal", "Response set in", "Source")
+_Variants = Sequence[ErrorEntry]
+"""The error of one entry in every slot that it stands for."""
+
+
+def error_group(links: Links, name: str, kind: str, errors: Sequence[ErrorEntry]) -> Group:
+    """Errors of a kind below one heading, those of several slots that differ in number alone drawn together.
+
+    A plain error, of which there is nothing more to say than its row, has its anchor there and no entry.
+    """
+    entries: dict[tuple[object, ...], list[ErrorEntry]] = {}
+    for error in errors:
+        if not _is_plain(error):
+            first = links.error_twins(error)[0].number
+            entries.setdefault((first, *_content(error)), []).append(error)
+    return Group(
+        id=name,
+        title=_KINDS.get(kind, kind),
+        overview=_overview(links, errors),
+        entries=tuple(error_entry(links, entry) for entry in entries.values()),
+    )
+
+
+def _overview(links: Links, errors: Sequence[ErrorEntry]) -> Table:
+    """One row for a number or run; columns that no row needs are left out."""
+    with_responses = any(error.response is not None or error.adjustable_in for error in errors)
+    with_registers = any(error.register is not None for error in errors)
+    with_sources = any(map(_is_plain, errors))
+    head = ["Number", "Decimal", "Name"]
+    head += ["Response", "Set in"] if with_responses else []
+    head += ["Error register"] if with_registers else []
+    head += ["Source"] if with_sources else []
+    rows = []
+    for error in errors:
+        cells = [_numbered(error), _decimal(error), _overview_name(error)]
+        if with_responses:
+            cells += [_response(links.device.drive, error.response), links.codes(error.adjustable_in) or NONE]
+        if with_registers:
+            cells.append(error.register or NONE)
+        if with_sources:
+            cells.append(links.source(error.cite))
+        rows.append(_plain_row(links, error, cells) if _is_plain(error) else Row(tuple(cells)))
+    return Table("overview errors", tuple(head), tuple(rows))
+
+
+def _plain_row(links: Links, error: ErrorEntry, cells: Sequence[Prose]) -> Row:
+    """Row of an error that has no entry: its anchor, and what else is said of it."""
+    remarks = (links.prose(error.description),) if error.description else ()
+    return Row(tuple(cells), id=error_id(error.kind, error.number), remarks=remarks)
+
+
+def _overview_name(error: ErrorEntry) -> Prose:
+    mark = shown_origin(error.origin)
+    return (error.name, " ", Piece(mark, tag="em")) if mark else error.name
+
+
+def _decimal(error: ErrorEntry) -> str:
+    return str(error.number) if error.count == 1 else f"{error.number} {ELLIPSIS} {error.last}"
+
+
+def _is_plain(error: ErrorEntry) -> bool:
+    """Whether a row of the overview holds all that is known of the error."""
+    return not (error.slot or error.causes or error.remedies or error.responses or error.adjustable_in or error.errata)
+
+
+def _content(error: ErrorEntry) -> tuple[object, ...]:
+    """What the slots of one entry have in common; an error that differs in any of it gets an entry of its own."""
+    return (
+        error.kind,
+        error.count,
+        error.name.replace(error.slot, "") if error.slot else error.name,
+        error.response,
+        error.responses,
+        error.register,
+        error.causes,
+        error.remedies,
+        error.description,
+        error.origin,
+    )
+
+
+def error_entry(links: Links, entry: _Variants) -> Entry:
+    """Entry for an error in one slot or several."""
+    error = entry[0]
+    origin = shown_origin(error.origin)
+    bullets = (
+        Bullets("Causes", _sentences(links, error.causes)),
+        Bullets("Remedies", _sentences(links, error.remedies)),
+    )
+    return Entry(
+        kind="error",
+        anchors=tuple(_anchor(one, one.number) for one in entry),
+        name=_name(entry),
+        marks=(origin,) if origin else (),
+        lead=links.prose(error.description),
+        facts=tuple(_facts(links, error)),
+        tables=(Table("variants", _VARIANTS, tuple(_variant(links, one) for one in entry)),),
+        lists=tuple(found for one in entry for found in _numbers(links, one)),
+        bullets=tuple(found for found in bullets if found.items),
+        notes=notes(links, map(error_subject, entry)),
+        printed=tuple(line for one in entry for line in _printed(one)),
+    )
+
+
+def _sentences(links: Links, texts: Sequence[str]) -> tuple[Prose, ...]:
+    return tuple(map(links.prose, texts))
+
+
+def _name(entry: _Variants) -> str:
+    """Name that all slots share: "CAN module (MXI1 / MXI2): bus-off"."""
+    slots = [error.slot for error in entry if error.slot]
+    return entry[0].name.replace(slots[0], " / ".join(slots)) if slots else entry[0].name
+
+
+def _facts(links: Links, error: ErrorEntry) -> Iterator[Fact]:
+    drive = links.device.drive
+    preset = _response(drive, error.response)
+    yield Fact("Response", preset)
+    names = list(dict.fromkeys(_response(drive, name) for name in error.responses))
+    if names == [preset]:
+        yield Fact("Selectable", "no other")
+    elif names:
+        yield Fact("Selectable", joined([(Piece(name, tag="b" if name == preset else ""),) for name in names]))
+    if error.register is not None:
+        yield Fact("Error register", error.register)
+
+
+def _response(drive: Drive | None, name: str | None) -> str:
+    """Response by the name that the drive's list gives it."""
+    known = drive.responses if drive else ()
+    return next((response.name for response in known if name in (response.name, *response.aliases)), name or NONE)
+
+
+def _variant(links: Links, error: ErrorEntry) -> Row:
+    return Row(
+        (
+            error.slot or NONE,
+            through(error_text(error.kind, error.number), error_text(error.kind, error.last)),
+            through(str(error.number), str(error.last)),
+            links.codes(error.adjustable_in) or NONE,
+            links.source(error.cite),
+        )
+    )
+
+
+def _anchor(error: ErrorEntry, number: int) -> Anchor:
+    return Anchor(error_id(error.kind, number), error_text(error.kind, number))
+
+
+def _numbered(error: ErrorEntry) -> Prose:
+    """The number as a link to its place, with the end of its run."""
+    first = anchored(_anchor(error, error.number))
+    last = error_text(error.kind, error.last)
+    return first if error.count == 1 else (*first, f" {ELLIPSIS} {last}")
+
+
+def _numbers(links: Links, error: ErrorEntry) -> Iterator[ItemList]:
+    """Every number of a run with the code that sets its response, where each has one of its own."""
+    if error.count == 1 or len(error.adjustable_in) != error.count:
+        return
+    items = []
+    for number, code in zip(range(error.number, error.last + 1), error.adjustable_in, strict=True):
+        anchor = _anchor(error, number)
+        own_id = anchor.id if number != error.number else ""
+        items.append(Item(Piece(anchor.text, f"#{anchor.id}"), (f"{number} ", links.code(code)), own_id))
+    yield ItemList(f"Number by number, {error.slot}" if error.slot else "Number by number", tuple(items))
+
+
+def _printed(error: ErrorEntry) -> Iterator[str]:
+    """What places print otherwise than it is used."""
+    return (f"{item.label}: {item.shown}" for item in error_subject(error).printed)

@@ -1,0 +1,95 @@
+"""The ledger of errata as entries of the reference, slips of the text dump apart."""
+
+from collections.abc import Iterator, Sequence
+
+from generator.emit.html.blocks import Anchor, Entry, Fact, Group, Row, Table, anchored
+from generator.emit.html.links import Links, erratum_id
+from generator.emit.html.notes import is_slip, located
+from generator.emit.html.text import Prose, joined, noted
+from generator.model import CodeRef, Erratum, ObjectRef
+
+SLIPS = "Slips of the text dump"
+"""Title of the group of entries in which the manual is right and its text dump is not."""
+
+_KINDS = {
+    "index": "Index arithmetic",
+    "reference": "References that are wrong or lead nowhere",
+    "inconsistency": "Places of the manual that disagree",
+    "value": "Values, units, ranges and counts",
+    "telegram": "Byte order and telegrams",
+    "standard": "Contradictions to standards",
+    "text": "Swapped or untranslated text",
+    "manuals": "One manual against another",
+    "typo": "Slips of typing",
+}
+_OVERVIEW = ("Entry", "Concerns", "Confidence")
+_PLACES = ("Place", "Prints", "Source")
+
+
+def ledger_groups(links: Links, errata: Sequence[Erratum]) -> tuple[Group, ...]:
+    """The ledger by kind, in the order of the ledger; the slips of the dump come last."""
+    kinds: dict[str, list[Erratum]] = {}
+    for erratum in errata:
+        if not is_slip(erratum):
+            kinds.setdefault(erratum.kind, []).append(erratum)
+    groups = [_group(links, f"errata-{kind}", _KINDS.get(kind, kind), entries) for kind, entries in kinds.items()]
+    slips = [erratum for erratum in errata if is_slip(erratum)]
+    if slips:
+        groups.append(_group(links, "errata-dump", SLIPS, slips))
+    return tuple(groups)
+
+
+def _group(links: Links, name: str, title: str, errata: Sequence[Erratum]) -> Group:
+    overview = Table("overview", _OVERVIEW, tuple(map(_overview_row, errata)))
+    return Group(name, title, overview, tuple(erratum_entry(links, erratum) for erratum in errata))
+
+
+def _overview_row(erratum: Erratum) -> Row:
+    return Row((anchored(_anchor(erratum)), ", ".join(erratum.about_text), erratum.confidence))
+
+
+def _anchor(erratum: Erratum) -> Anchor:
+    return Anchor(erratum_id(erratum.id), erratum.id)
+
+
+def erratum_entry(links: Links, erratum: Erratum) -> Entry:
+    """Entry for an erratum."""
+    places = tuple(Row((p.location, p.printed, links.page_source(p.manual, "", p.page))) for p in erratum.places)
+    return Entry(
+        kind="erratum",
+        anchors=(_anchor(erratum),),
+        name="",
+        marks=(),
+        lead=links.prose(erratum.why),
+        facts=tuple(_facts(erratum)),
+        tables=(Table("places", _PLACES, places),) if places else (),
+        related=(Fact("Concerns", _concerns(links, erratum)),),
+    )
+
+
+def _facts(erratum: Erratum) -> Iterator[Fact]:
+    if erratum.printed_text:
+        yield Fact("Printed", noted(erratum.printed_text, located(" ".join(erratum.place), None)))
+    yield Fact("Used", erratum.used_text)
+    yield Fact("Confidence", erratum.confidence)
+    if erratum.rule is not None:
+        yield Fact("Check", erratum.rule)
+    if is_slip(erratum):
+        yield Fact("Kind", _KINDS.get(erratum.kind, erratum.kind))
+
+
+def _concerns(links: Links, erratum: Erratum) -> Prose:
+    """Links to what the ledger names, after its own words where those are other words."""
+    codes = [subject for subject in erratum.about if isinstance(subject, CodeRef)]
+    objects = [subject for subject in erratum.about if isinstance(subject, ObjectRef)]
+    others = [subject for subject in erratum.about if not isinstance(subject, CodeRef | ObjectRef)]
+    parts = [links.codes(codes), links.objects(objects), *((links.subject(s),) for s in dict.fromkeys(others))]
+    found = joined([part for part in parts if part])
+    named = ", ".join(erratum.about_text)
+    if not found:
+        return named
+    return found if _text(found) == named else (f"{named}: ", *found)
+
+
+def _text(pieces: Prose) -> str:
+    return "".join(piece if isinstance(piece, str) else piece.text for piece in pieces)
