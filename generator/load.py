@@ -21,7 +21,7 @@ MAX_BYTES = 4 * 1024 * 1024
 MAX_DEPTH = 24
 """Deepest nesting of mappings and sequences."""
 
-_PARSER = getattr(yaml, "CParser", None)
+_PARSER = getattr(yaml, "CBaseLoader", yaml.BaseLoader)
 _PLAIN_INT = re.compile(r"(-?(?:0|[1-9][0-9]*)|-?0x[0-9A-Fa-f]+)\Z")
 _WORDS = {"true": True, "false": False}
 
@@ -103,7 +103,7 @@ class _Reader:
     """One pass over libyaml's events."""
 
     def __init__(self, text: str, name: str, problems: Problems) -> None:
-        self._next = (_PARSER or yaml.Loader)(text).get_event
+        self._next = _PARSER(text).get_event
         self._name = name
         self._problems = problems
         self._start = len(problems.found)

@@ -1,5 +1,6 @@
 """Strict YAML: what is typed is what is read."""
 
+import mini
 import pytest
 
 from generator.diagnostics import Problems
@@ -92,3 +93,26 @@ def test_collection_is_switched_on_again() -> None:
     assert gc.isenabled()
     loads("a: [", "x.yaml", Problems())
     assert gc.isenabled()
+
+
+def test_libyaml_reads(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The C parser is in use: PyYAML's own reads about forty times slower."""
+    import yaml
+
+    from generator import load
+
+    assert load._PARSER is yaml.CBaseLoader
+
+
+def test_both_parsers_read_the_same(monkeypatch: pytest.MonkeyPatch) -> None:
+    import yaml
+
+    from generator import load
+
+    text = (mini.SPEC / "devices" / "mini" / "codes.yaml").read_text(encoding="utf-8")
+    fast = read(text)
+    monkeypatch.setattr(load, "_PARSER", yaml.BaseLoader)
+    slow = read(text)
+    assert fast == slow
+    assert fast.values_at == slow.values_at
+    assert fast["codes"].items_at == slow["codes"].items_at
