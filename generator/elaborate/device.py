@@ -6,6 +6,7 @@ from generator.diagnostics import suggestion
 from generator.elaborate import codes as code_table
 from generator.elaborate import errata as ledger
 from generator.elaborate import errors as error_table
+from generator.elaborate import gsd as gsd_file
 from generator.elaborate import indicators as panel
 from generator.elaborate import objects as object_table
 from generator.elaborate import telegrams as telegram_table

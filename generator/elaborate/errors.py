@@ -48,7 +48,7 @@ def _known_responses(node: Node, drive: Drive | None) -> None:
 
 
 def _expand(node: Node, frame: Frame) -> Iterator[ErrorEntry]:
-    first, last = _number(node)
+    first, last = number(node)
     printed = dict(node.children("printed"))
     if not printed:
         yield _entry(node, None, first, last, None, frame)
@@ -64,7 +64,8 @@ def _expand(node: Node, frame: Frame) -> Iterator[ErrorEntry]:
         yield _entry(node, known.get(name), first, last, place, frame)
 
 
-def _number(node: Node) -> tuple[int, int]:
+def number(node: Node) -> tuple[int, int]:
+    """First and last number of an error entry; (0, 0) where a problem was noted."""
     value = node.get("number")
     if isinstance(value, int):
         return value, value
