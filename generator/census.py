@@ -49,7 +49,7 @@ def _panel_counts(device: Device) -> Iterator[str]:
     yield f"count {device.id} telegrams {len(device.layouts)} layouts, {len(device.examples)} examples"
 
 
-_KEYS = ("code", "index", "subindex", "id", "number")
+_KEYS = ("code", "index", "subindex", "id", "number", "keyword", "bit_rate", "reference")
 
 
 def _flatten(value: object, path: str) -> Iterator[tuple[str, object]]:

@@ -1,4 +1,4 @@
-"""Command line: ``python -m generator build | check | census | explain``."""
+"""Command line: ``python -m generator build | check | census | dcf | explain``."""
 
 import argparse
 import json
@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from generator import VERSION
-from generator.write import digest, is_current, write
+from generator.write import digest, is_current, save, write
 
 _STATE = ".state.json"
 _ROOT = Path(__file__).resolve().parent.parent
@@ -21,6 +21,8 @@ Examples:
   python -m generator check --format json       the same for an editor or CI
   python -m generator census > facts.txt        all facts, one a line; compare two with diff
   python -m generator explain code-index        what a rule demands
+  python -m generator dcf --device e94aycca --slot MXI1 --product 9400_StateLine --node 5 --set C13381=100
+                                                the DCF and the EDS of one device on a bus
 
 Exit status: 0 done, 1 problems in spec (nothing is written), 2 wrong usage.
 """
@@ -36,6 +38,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
         parser.error(f"there is no folder {options.spec}")
     if options.command == "build":
         return _build(options.spec, options.out, options.format)
+    if options.command == "dcf":
+        return _dcf(options)
     return _report(options.spec, options.format, census=options.command == "census")
 
 
@@ -59,6 +63,29 @@ def _parser() -> argparse.ArgumentParser:
     commands.add_parser(
         "census", parents=[common], help="print every fact, one a line, and the coverage of each manual"
     )
+    dcf = commands.add_parser(
+        "dcf",
+        parents=[common],
+        help="write the DCF and the EDS of one device, with its node-ID and settings",
+        epilog="VALUE is a number (in the unit of the code; 0x... as it travels), the label of a selection list, a "
+        "text, or $NODEID + 0x...",
+    )
+    dcf.add_argument("--device", help="id of the device; may be left out where there is one CANopen device")
+    dcf.add_argument("--slot", help="slot of the module; may be left out where there is one")
+    dcf.add_argument(
+        "--product", help="base drive as in the names of the EDS files; may be left out where there is one"
+    )
+    dcf.add_argument("--node", required=True, metavar="ID", help="node-ID, 1 ... 127")
+    dcf.add_argument("--baud", default="500", metavar="RATE", help="bit rate in kbit/s (default: 500)")
+    dcf.add_argument(
+        "--set",
+        action="append",
+        default=[],
+        metavar="NAME=VALUE",
+        dest="settings",
+        help="value of a code or object: C13351=2, C13320/1=0x185, I-1017=100; may be repeated",
+    )
+    dcf.add_argument("--out", type=Path, default=Path(), help="folder of the two files (default: the working folder)")
     explain = commands.add_parser("explain", help="say what a rule demands")
     explain.add_argument("rule", nargs="?", help="id of the rule, as in error[RULE]; without it all rules are listed")
     return parser
@@ -127,6 +154,42 @@ def _report(spec: Path, style: str, *, census: bool) -> int:
     else:
         counts = ", ".join(f"{d.id}: {len(d.codes)} codes, {len(d.objects)} objects" for d in model.devices)
         print(f"no problems ({counts})")
+    return 0
+
+
+def _dcf(options: argparse.Namespace) -> int:
+    from generator import mistakes
+    from generator.dcf import Request, files
+    from generator.diagnostics import DiagnosticsError
+    from generator.pipeline import compile_model, reported
+
+    request = Request(
+        device=options.device,
+        slot=options.slot,
+        product=options.product,
+        node=options.node,
+        bit_rate=options.baud,
+        settings=tuple(options.settings),
+    )
+    try:
+        model = compile_model(options.spec, _label(options.spec))
+        with reported():
+            contents = {name: output.data() for name, output in files(model, request).items()}
+    except DiagnosticsError as error:
+        return _show(error, options.spec, options.format)
+    except mistakes.MistakesError as error:
+        if options.format == "json":
+            sys.stdout.write(mistakes.as_json(error.mistakes))
+        else:
+            sys.stderr.write(mistakes.as_text(error.mistakes) + "\nnothing was written\n")
+        return 2
+    try:
+        save(options.out, contents)
+    except OSError as error:
+        print(f"{options.out}: {error.strerror}; nothing was written", file=sys.stderr)
+        return 1
+    for name in contents:
+        print(options.out / name)
     return 0
 
 

@@ -1,5 +1,7 @@
 """The stages in order, with a barrier after each."""
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 from generator.check import check
@@ -40,6 +42,15 @@ def render(model: Model) -> dict[str, bytes]:
     if problems:
         raise DiagnosticsError(problems)
     return files
+
+
+@contextmanager
+def reported() -> Iterator[None]:
+    """Raise a ``DiagnosticsError`` for an ``EmitError`` of the block."""
+    try:
+        yield
+    except EmitError as error:
+        raise DiagnosticsError([_diagnostic(error)]) from error
 
 
 def _diagnostic(error: EmitError) -> Diagnostic:

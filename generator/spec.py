@@ -18,6 +18,7 @@ _DEVICE_KINDS = (
     "switches",
     "tables",
     "telegrams",
+    "gsd",
     "errata",
 )
 _DRIVE_KINDS = ("drive", "codes")

@@ -32,19 +32,32 @@ def write(folder: Path, files: Mapping[str, bytes], inputs: Mapping[str, str]) -
     contents[MANIFEST] = _manifest(contents, inputs)
     stale = sorted(_listed(folder) - set(contents))
     changed = [path for path, data in contents.items() if _read(folder / path) != data]
+    _replace(folder, {path: contents[path] for path in changed})
+    for path in stale:
+        _remove(folder, path)
+    return sorted(set(changed) | set(stale))
+
+
+def save(folder: Path, files: Mapping[str, bytes]) -> None:
+    """Put files into a folder of the user: no manifest, nothing removed; contents are complete before one is replaced.
+
+    Raises:
+        OSError: A file cannot be written.
+    """
+    _replace(folder, files)
+
+
+def _replace(folder: Path, files: Mapping[str, bytes]) -> None:
     staged: list[tuple[str, Path]] = []
     try:
-        for path in changed:
-            staged.append((_stage(folder / path, contents[path]), folder / path))
+        for path, data in files.items():
+            staged.append((_stage(folder / path, data), folder / path))
         for temporary, final in staged:
             os.replace(temporary, final)
     finally:
         for temporary, _ in staged:
             with contextlib.suppress(FileNotFoundError):
                 os.unlink(temporary)
-    for path in stale:
-        _remove(folder, path)
-    return sorted(set(changed) | set(stale))
 
 
 def is_current(folder: Path) -> bool:

@@ -17,6 +17,7 @@ from generator.emit.html.links import Links
 from generator.model import (
     Access,
     Bit,
+    Chapter,
     Code,
     CodeRef,
     Default,
@@ -25,14 +26,25 @@ from generator.model import (
     Erratum,
     ErrorEntry,
     ErrorRef,
+    Example,
+    Field,
+    FieldType,
+    Formula,
+    Layout,
+    Light,
+    Manual,
     Model,
     NodeRelative,
     Option,
+    Origin,
+    Pattern,
     PrintedIndex,
     PrintedNumber,
     Range,
     SubCode,
     SubIndex,
+    SwitchRow,
+    Values,
 )
 
 HEADINGS = {f"h{level}": level for level in range(1, 7)}
@@ -209,8 +221,19 @@ def devices(model: Model, pages: dict[str, Page]) -> list[tuple[Device, Page]]:
     return [(device, pages[f"{device.id}.html"]) for device in model.devices]
 
 
-def test_one_page_a_device_and_nothing_else(model: Model, outputs: dict[str, str], generated: Path) -> None:
-    assert set(outputs) == {"index.html", "style.css", *(f"{device.id}.html" for device in model.devices)}
+@pytest.fixture(scope="module")
+def panels(model: Model, pages: dict[str, Page]) -> list[tuple[Device, Page]]:
+    return [(device, pages[f"{device.id}-tables.html"]) for device in model.devices]
+
+
+@pytest.fixture(scope="module")
+def ledgers(model: Model, pages: dict[str, Page]) -> list[tuple[Device, Page]]:
+    return [(device, pages[f"{device.id}-errata.html"]) for device in model.devices]
+
+
+def test_pages_of_devices_and_nothing_else(model: Model, outputs: dict[str, str], generated: Path) -> None:
+    names = {f"{device.id}{part}.html" for device in model.devices for part in ("", "-tables", "-errata")}
+    assert set(outputs) == {"index.html", "coverage.html", "style.css", *names}
     for path, source in outputs.items():
         assert (generated / "html" / path).read_bytes().decode() == source
 
@@ -277,8 +300,13 @@ def test_tables_have_heads_and_their_own_scroll_container(pages: dict[str, Page]
                 assert row.get("class") == "more" or (row[0].tag == "th" and row[0].get("scope") == "row")
 
 
-def test_pages_say_what_they_are_made_from(model: Model, devices: list[tuple[Device, Page]]) -> None:
-    for device, page in devices:
+def test_pages_say_what_they_are_made_from(
+    model: Model,
+    devices: list[tuple[Device, Page]],
+    panels: list[tuple[Device, Page]],
+    ledgers: list[tuple[Device, Page]],
+) -> None:
+    for device, page in (*devices, *panels, *ledgers):
         manual = device.manual
         footer = text(page.root.find("body/footer"))
         for shown in (
@@ -589,8 +617,8 @@ def test_codes_name_the_errors_whose_response_they_set(devices: list[tuple[Devic
             assert {a.get("href") for a in shown.iter("a")} == expected if shown is not None else not expected
 
 
-def test_errata_ledger(devices: list[tuple[Device, Page]]) -> None:
-    for device, page in devices:
+def test_errata_ledger(ledgers: list[tuple[Device, Page]]) -> None:
+    for device, page in ledgers:
         articles = {f.get("id") for f in with_class(page.root, "erratum") if f.tag == "article"}
         assert articles == {f"erratum-{erratum.id}" for erratum in device.errata}
         for erratum in device.errata:
@@ -639,13 +667,19 @@ def test_entries_show_their_errata(devices: list[tuple[Device, Page]]) -> None:
                 assert not names
                 continue
             article = page.within(place, "article").get("id") or ""
-            expected.setdefault(article, set()).update(f"#erratum-{name}" for name in names)
+            expected.setdefault(article, set()).update(f"{device.id}-errata.html#erratum-{name}" for name in names)
             notes = with_class(page.element(article), "note")
             pages_of[article] = {cast(Element, note.find("p/a")).get("href") or "" for note in notes}
         assert pages_of == expected
-        slips = {f"#erratum-{erratum.id}" for erratum in device.errata if erratum.origin == "dump"}
+
+
+def test_slips_of_the_dump_are_told_apart(
+    devices: list[tuple[Device, Page]], panels: list[tuple[Device, Page]]
+) -> None:
+    for device, page in (*devices, *panels):
+        slips = {e.id for e in device.errata if e.origin == "dump"}
         for note in with_class(page.root, "note"):
-            link = cast(Element, note.find("p/a")).get("href")
+            link = (cast(Element, note.find("p/a")).get("href") or "").partition("#erratum-")[2]
             assert (link in slips) == ("slip" in (note.get("class") or "")) == text(note).startswith("Slip")
 
 
@@ -698,7 +732,12 @@ def test_base_drive(devices: list[tuple[Device, Page]]) -> None:
 
 def test_first_page_lists_devices_and_sources(model: Model, pages: dict[str, Page]) -> None:
     page = pages["index.html"]
-    rows = [tuple(map(text, row.values())) for row in table(page.root, "devices")]
+    listed = table(page.root, "devices")
+    assert [[a.get("href") for cell in row.values() for a in cell.iter("a")] for row in listed] == [
+        [f"{d.id}.html", f"{d.id}-tables.html", f"coverage.html#manual-{d.manual.id}", f"{d.id}-errata.html"]
+        for d in model.devices
+    ]
+    rows = [(main_text(row["Device"]), *map(text, list(row.values())[1:])) for row in listed]
     assert rows == [
         (
             d.title,
@@ -710,18 +749,510 @@ def test_first_page_lists_devices_and_sources(model: Model, pages: dict[str, Pag
         )
         for d in model.devices
     ]
-    assert {f.get("id") for f in with_class(page.root, "source")} == {f"manual-{manual.id}" for manual in model.manuals}
+    sources = {text(row["Source"]): row for row in table(page.root, "sources")}
+    assert sources.keys() == {manual.id for manual in model.manuals}
+    for manual in model.manuals:
+        row = sources[manual.id]
+        shown = tuple(text(row[name]) for name in ("Title", "Publisher", "Edition", "Date"))
+        assert shown == (manual.title, manual.publisher, manual.edition, manual.date or NOTHING)
+        assert cast(Element, row["Source"].find("a")).get("href") == f"coverage.html#manual-{manual.id}"
+        assert page.element(f"manual-{manual.id}").tag == "tr"
+
+
+STATES = {
+    "transcribed": "transcribed",
+    "not-applicable": "without facts of this kind",
+    "lost": "lost in the text dump",
+    "pending": "not yet",
+    None: "not yet",
+}
+
+
+def test_coverage_has_every_source_and_chapter(model: Model, pages: dict[str, Page]) -> None:
+    page = pages["coverage.html"]
+    assert {f.get("id") for f in with_class(page.root, "source")} == {f"manual-{m.id}" for m in model.manuals}
+    assert sum(len(manual.chapters) for manual in model.manuals) > 100
     for manual in model.manuals:
         entry = page.element(f"manual-{manual.id}")
         assert text(with_class(entry, "name")[0]) == manual.title
-        shown = facts(entry)
-        assert text(shown["Publisher"]) == manual.publisher and text(shown["Edition"]) == manual.edition
-        chapters = [(text(r["Chapter"]), text(r["Title"])) for r in table(entry, "chapters")]
-        assert chapters == [(chapter.number, chapter.title) for chapter in manual.chapters]
+        said = {name: text(value) for name, value in facts(entry).items() if name != "Describes"}
+        optional = {"Date": manual.date, "Document": manual.document, "Pages": manual.pages, "Address": manual.url}
+        assert said == {
+            "Kind": "public document" if manual.kind == "public" else manual.kind,
+            "Publisher": manual.publisher,
+            "Edition": manual.edition,
+            **{name: str(value) for name, value in optional.items() if value},
+        }
+        chapters = [tuple(map(text, row.values())) for row in table(entry, "chapters")]
+        assert chapters == [
+            (c.number, c.title, str(c.page or NOTHING), STATES[c.status], " ".join((c.note or "").split()))
+            for c in manual.chapters
+        ]
+        assert all(page.element(f"manual-{manual.id}-{c.number}").tag == "tr" for c in manual.chapters)
+
+
+def test_coverage_counts_chapters_and_lists_what_is_lost(model: Model, pages: dict[str, Page]) -> None:
+    page = pages["coverage.html"]
+    counts = {
+        text(row["Source"]): [text(cell) for cell in list(row.values())[3:]] for row in table(page.root, "counts")
+    }
+    assert counts == {
+        manual.id: [
+            str(len(manual.chapters)),
+            *(str(sum(STATES[c.status] == state for c in manual.chapters)) for state in dict.fromkeys(STATES.values())),
+        ]
+        for manual in model.manuals
+    }
+    lost = {(text(r["Source"]), text(r["Chapter"]), text(r["Title"])) for r in table(page.root, "lost")}
+    assert lost == {(m.id, c.number, c.title) for m in model.manuals for c in m.chapters if c.status == "lost"}
+    assert lost
+
+
+def test_pages_of_a_device_lead_to_each_other(model: Model, pages: dict[str, Page]) -> None:
+    for device in model.devices:
+        own = [f"{device.id}{part}.html" for part in ("", "-tables", "-errata")]
+        for path in own:
+            listed = cast(Element, pages[path].root.find("body/nav/ul"))
+            expected = [name for name in own if name != path] + [f"coverage.html#manual-{device.manual.id}"]
+            assert [a.get("href") for a in listed.iter("a")] == expected
+            assert [b.get("aria-current") for b in listed.iter("b")] == ["page"]
+
+
+def named(device: Device) -> dict[str, Any]:
+    """Everything that has a name alone, by its anchor."""
+    kinds = (
+        ("led", device.indicators),
+        ("switch", device.switches),
+        ("table", device.tables),
+        ("formula", device.formulas),
+        ("layout", device.layouts),
+        ("telegram", device.examples),
+    )
+    return {f"{kind}-{entry.id}": entry for kind, entries in kinds for entry in cast(tuple[Any, ...], entries)}
+
+
+def test_named_things_have_entries_citations_and_errata(panels: list[tuple[Device, Page]]) -> None:
+    for device, page in panels:
+        entries = {found.get("id") or "": found for found in with_class(page.root, "entry")}
+        assert entries.keys() == named(device).keys()
+        for anchor, thing in named(device).items():
+            entry = entries[anchor]
+            assert text(with_class(entry, "name")[0]) == thing.name
+            assert text(facts(entry)["Source"]) == cite_text(thing.cite)
+            notes = {cast(Element, note.find("p/a")).get("href") for note in with_class(entry, "note")}
+            assert notes == {f"{device.id}-errata.html#erratum-{name}" for name in thing.errata}
+            origin = getattr(thing, "origin", Origin.MANUAL)
+            assert [text(em) for em in cast(Element, entry.find("h4")).iter("em")] == MARKS[origin]
+        overviews = [found for found in with_class(page.root, "overview") if found.tag == "table"]
+        rows = [row for found in overviews for row in found.findall("tbody/tr")]
+        listed = {(row[0][0].get("href") or "")[1:]: (text(row[1]), text(row[-1])) for row in rows}
+        assert listed == {anchor: (thing.name, brief(device, thing)) for anchor, thing in named(device).items()}
+
+
+def brief(device: Device, thing: Any) -> str:
+    """Last cell of the overview: bytes, expression, or a count of rows or examples."""
+    match thing:
+        case Example():
+            return " ".join("XX" if octet is None else f"{octet:02X}" for octet in thing.data)
+        case Formula():
+            return thing.expression
+        case Layout():
+            return str(sum(example.layout == thing.id for example in device.examples))
+        case _:
+            return str(len(thing.rows))
+
+
+MARKS = {
+    Origin.MANUAL: [],
+    Origin.STANDARD: ["from a standard"],
+    Origin.DERIVED: ["derived"],
+    Origin.ASSUMED: ["assumed"],
+    Origin.PUBLIC: ["from a public document"],
+}
+
+
+def test_errata_lead_to_named_things_and_back(
+    ledgers: list[tuple[Device, Page]], panels: list[tuple[Device, Page]]
+) -> None:
+    seen = 0
+    for (device, ledger), (_, panel) in zip(ledgers, panels, strict=True):
+        for erratum in device.errata:
+            links = {a.get("href") for a in facts(ledger.element(f"erratum-{erratum.id}"), "related")["Concerns"]}
+            for subject in {subject for subject in erratum.about if isinstance(subject, str)}:
+                kind, _, name = subject.partition(":")
+                if kind == "device":
+                    assert f"{device.id}.html#device" in links
+                    continue
+                assert f"{device.id}-tables.html#{kind}-{name}" in links
+                back = [
+                    a.get("href")
+                    for note in with_class(panel.element(f"{kind}-{name}"), "note")
+                    for a in note.iter("a")
+                ]
+                assert f"{device.id}-errata.html#erratum-{erratum.id}" in back
+                seen += 1
+    assert seen > 10
+
+
+def seconds(value: Fraction | None) -> str:
+    return "" if value is None else f"{float(value):g} s"
+
+
+def in_words(pattern: Pattern) -> str:
+    """What a reader sees of a pattern: its words and its notation."""
+    colour = f" {pattern.colour}" if pattern.colour else ""
+    times = {1: "once", 2: "twice"}.get(pattern.flashes or 0, f"{pattern.flashes} times")
+    period, pause = seconds(pattern.period), seconds(pattern.pause)
+    return {
+        Light.ANY: NOTHING,
+        Light.OFF: "off off",
+        Light.ON: f"lit{colour} on{colour}",
+        Light.FLICKER: f"flickers{colour} flicker{colour}",
+        Light.ON_OR_FLICKER: f"lit or flickers{colour} on or flicker{colour}",
+        Light.BLINK: f"blinks{colour}"
+        + (f", changes every {period} blink{colour} {period}" if period else f" blink{colour}"),
+        Light.FLASH: f"flashes{colour} {times}"
+        + (f", then {pause} dark" if pause else "")
+        + f" flash{colour} {pattern.flashes}"
+        + (f", {pause} off" if pause else ""),
+    }[pattern.light]
+
+
+def test_leds(panels: list[tuple[Device, Page]], outputs: dict[str, str]) -> None:
+    assert any(device.indicators for device, _ in panels)
+    for device, page in panels:
+        for indicator in device.indicators:
+            entry = page.element(f"led-{indicator.id}")
+            for led in indicator.leds:
+                assert text(facts(entry)[f"LED {led.label}"]) == " ".join(filter(None, (led.colour, led.name)))
+            rows = table(entry, "lamps")
+            assert len(rows) == len(indicator.rows)
+            for number, (row, shown) in enumerate(zip(indicator.rows, rows, strict=True), 1):
+                assert list(shown)[: len(indicator.leds)] == [f"{led.label} ({led.colour})" for led in indicator.leds]
+                cells = list(shown.values())[: len(indicator.leds)]
+                assert [text(cell) for cell in cells] == [in_words(pattern) for pattern in row.patterns]
+                assert (text(shown["State"]), text(shown["Meaning"])) == (row.state, row.meaning or NOTHING)
+                assert page.element(f"led-{indicator.id}.{number}").tag == "tr"
+                for led, pattern, cell in zip(indicator.leds, row.patterns, cells, strict=True):
+                    check_drawing(led.colour, pattern, cell, outputs["style.css"])
+
+
+def check_drawing(colour: str, pattern: Pattern, cell: Element, css: str) -> None:
+    """The drawing has the LED's colour and moves in the times of the pattern."""
+    drawings = with_class(cell, "led")
+    assert len(drawings) == (pattern.light is not Light.ANY)
+    for drawing in drawings:
+        *_, shown, light = (drawing.get("class") or "").split()
+        assert shown == (pattern.colour or colour)
+        found = re.search(rf"@keyframes {light} \{{(.*?)\n\}}", css, re.DOTALL)
+        assert (found is None) == (pattern.light in (Light.ON, Light.OFF, Light.ON_OR_FLICKER))
+        if found is None:
+            assert light == ("off" if pattern.light is Light.OFF else "on")
+            continue
+        whole = re.search(rf"\.{light} \{{ animation: {light} ([0-9.]+)s step-end infinite; \}}", css)
+        assert whole
+        frames = [
+            (Fraction(at), lit != "transparent")
+            for at, lit in re.findall(r"([0-9.]+)% \{ background: ([^;]+);", found[1])
+        ]
+        assert frames[0] == (Fraction(0), True)
+        assert all(a[1] != b[1] and a[0] < b[0] for a, b in pairwise(frames))
+        rests = [b[0] - a[0] for a, b in pairwise([*frames, (Fraction(100), True)])]
+        times = [Fraction(whole[1]) * rest / 100 for rest in rests]
+        if pattern.period is not None:
+            assert times == [pattern.period] * 2
+        if pattern.flashes is not None:
+            assert len(times) == 2 * pattern.flashes
+        if pattern.pause is not None:
+            assert abs(times[-1] - pattern.pause) < Fraction(1, 1000)
+
+
+def test_drawings_move_only_where_readers_want_it(outputs: dict[str, str], panels: list[tuple[Device, Page]]) -> None:
+    css = outputs["style.css"]
+    wanted = css[css.index("@media (prefers-reduced-motion: no-preference)") :]
+    assert css.count("animation:") == wanted[: wanted.index("\n}\n")].count("animation:") > 0
+    assert all("main:has(#blink:checked)" in line for line in css.splitlines() if "animation:" in line)
+    for device, page in panels:
+        assert ("blink" in page.ids) == bool(device.indicators)
+
+
+def test_switches(panels: list[tuple[Device, Page]]) -> None:
+    assert any(device.switches for device, _ in panels)
+    signs = {"1": "ON", "0": "off", "x": "either"}
+    for device, page in panels:
+        for group in device.switches:
+            entry = page.element(f"switch-{group.id}")
+            shown = facts(entry)
+            assert text(shown["Switches"]) == ", ".join(group.labels)
+            assert ("Weights" in shown) == bool(group.weights)
+            assert not group.weights or main_text(shown["Weights"]) == ", ".join(map(str, group.weights))
+            if group.valid:
+                assert tuple(map(int, ends(main_text(shown["Valid"])))) == group.valid
+            assert references(shown["Held in"]) == {(r.number, r.subcode) for r in group.sets} if group.sets else True
+            unit = f" [{group.unit}]" if group.unit else ""
+            seen = []
+            for positions in with_class(entry, "positions"):
+                assert [text(th) for th in positions.findall("thead/tr/th")] == [f"Value{unit}", *group.labels]
+                seen += [tuple(map(text, row)) for row in positions.findall("tbody/tr")]
+            assert seen == [(row.value, *(signs[position] for position in row.positions)) for row in group.rows]
+            assert [text(li) for li in entry.findall("div/div/ul/li")] == [" ".join(n.split()) for n in group.notes]
+            for row in group.rows:
+                if row.value.isdigit():
+                    assert text(page.element(f"switch-{group.id}.{row.value}")[0]) == row.value
+            special = [row for row in group.rows if not row.value.isdigit()]
+            if 0 < len(special) < len(group.rows):
+                for row in special:
+                    said = f"{row.value}: {' '.join(signs[position] for position in row.positions)}"
+                    assert said in text(shown["Special positions"])
+
+
+def test_tables_have_every_printed_cell(panels: list[tuple[Device, Page]]) -> None:
+    assert sum(len(t.rows) for device, _ in panels for t in device.tables) > 100
+    for device, page in panels:
+        for printed in device.tables:
+            entry = page.element(f"table-{printed.id}")
+            found = with_class(entry, "printed")[0]
+            head = [f"{c.name} [{c.unit}]" if c.unit else c.name for c in printed.columns]
+            assert [text(th) for th in found.findall("thead/tr/th")] == [" ".join(name.split()) for name in head]
+            rows = [[text(cell) for cell in row] for row in found.findall("tbody/tr")]
+            expected = [
+                [NOTHING if cell == "-" else " ".join(str(cell).split()) for cell in row] for row in printed.rows
+            ]
+            assert rows == expected
+            assert [row.get("id") for row in found.findall("tbody/tr")] == [
+                f"table-{printed.id}.{number}" for number in range(1, len(printed.rows) + 1)
+            ]
+            assert [text(li) for li in entry.findall("div/div/ul/li")] == [" ".join(n.split()) for n in printed.notes]
+            assert text(facts(entry)["Table of"]) == printed.kind.replace("-", " ")
+
+
+def test_formulas_with_their_worked_examples(panels: list[tuple[Device, Page]]) -> None:
+    assert any(formula.examples for device, _ in panels for formula in device.formulas)
+    for device, page in panels:
+        for formula in device.formulas:
+            entry = page.element(f"formula-{formula.id}")
+            shown = facts(entry)
+            assert text(shown["Expression"]) == formula.expression
+            assert text(shown["Unit"]) == formula.unit if formula.unit else "Unit" not in shown
+            assert (" ".join(formula.note.split()) or None) == (text(entry.find("p")) if formula.note else None)
+            rows = table(entry, "worked")
+            assert len(rows) == len(formula.examples)
+            for row, example in zip(rows, formula.examples, strict=True):
+                cells = {name: text(cell) for name, cell in row.items()}
+                source, result = (
+                    cells.pop("Source"),
+                    cells.pop(f"Result [{formula.unit}]" if formula.unit else "Result"),
+                )
+                del cells["Example"]
+                values = {name: int(value) for name, value in cells.items() if value != NOTHING}
+                assert values == dict(example.values) and source == cite_text(example.cite)
+                assert int(result) == example.result == formula.evaluate(values)
+
+
+def fields_of(fields: tuple[Field, ...], path: str = "") -> Iterator[tuple[str, Field]]:
+    """Fields and those of their groups by name."""
+    for field in fields:
+        yield path + field.name, field
+        yield from fields_of(field.fields, f"{path}{field.name}.")
+
+
+def test_layouts(panels: list[tuple[Device, Page]]) -> None:
+    assert any(device.layouts for device, _ in panels)
+    for device, page in panels:
+        for layout in device.layouts:
+            entry = page.element(f"layout-{layout.id}")
+            assert text(facts(entry)["Protocol"]) == layout.protocol
+            rows = {text(row["Field"]): row for row in table(entry, "fields")}
+            fields = dict(fields_of(layout.fields))
+            assert list(rows) == list(fields)
+            for name, field in fields.items():
+                row = rows[name]
+                assert page.element(f"layout-{layout.id}.{name}") is page.parents[row["Field"]]
+                assert text(row["Title"]) == field.title
+                assert text(row["Length"]) == shown_length(field)
+                many = field.length != 1 and field.type in (FieldType.UINT, FieldType.INT)
+                assert (text(row["Type"]).partition(", ")[2] != "") == many
+                assert ("high byte first" in text(row["Type"])) == (many and field.big)
+                if field.constant is None:
+                    assert text(row["Constant"]) == NOTHING
+                else:
+                    assert int(main_text(row["Constant"]), 0) == field.constant
+                check_field_values(field, below(page, f"layout-{layout.id}.{name}"))
+            named_in = facts(entry, "related").get("Worked examples")
+            examples = [e.id for e in device.examples if e.layout == layout.id]
+            assert (text(named_in).split(", ") if named_in is not None else []) == examples
+
+
+def shown_length(field: Field) -> str:
+    if field.type is FieldType.GROUP:
+        return f"repeats {field.count} times" if field.count else "repeats to the end"
+    if field.sizes:
+        return f"by {field.sizes.by}" + (f", times {field.sizes.times}" if field.sizes.times else "")
+    return "the rest" if field.length is None else str(field.length)
+
+
+def check_field_values(field: Field, more: Element | None) -> None:
+    assert " ".join(field.description.split()) in (text(more) if more is not None else "")
+    shown = lists(more, direct=False)
+    assert options(shown.pop("Values", {})) == {option.value: option.label for option in field.values}
+    parts = [(*map(int, ends(key)), label) for key, label in shown.pop("Bits", {}).items()]
+    assert parts == [(part.low, part.high, part.label) for part in field.bits]
+    for name, meanings in field.bit_values:
+        assert options(shown.pop(f"Values of {name}")) == {option.value: option.label for option in meanings}
+    if field.sizes:
+        sizes = shown.pop(f"Length in bytes by {field.sizes.by}")
+        assert {int(key, 0): int(size) for key, size in sizes.items()} == dict(field.sizes.sizes)
+    assert not shown
+
+
+def test_offsets_of_fields_follow_from_the_lengths_before(panels: list[tuple[Device, Page]]) -> None:
+    for device, page in panels:
+        for layout in device.layouts:
+            rows = {
+                text(row["Field"]): text(row["Offset"]) for row in table(page.element(f"layout-{layout.id}"), "fields")
+            }
+            before: list[Field] = []
+            for field in layout.fields:
+                fixed = [f.length for f in before if isinstance(f.length, int) and f.type is not FieldType.GROUP]
+                if len(fixed) == len(before):
+                    assert rows[field.name] == str(sum(fixed))
+                else:
+                    assert rows[field.name] == f"after {before[-1].name}"
+                before.append(field)
+
+
+def octets(shown: str) -> list[int | None]:
+    return [None if octet == "XX" else int(octet, 16) for octet in shown.split() if octet != NOTHING]
+
+
+def flat(values: Values, path: str = "") -> dict[str, int | str]:
+    """Values by name, those in groups with the number of the repetition."""
+    found: dict[str, int | str] = {}
+    for name, value in values.items():
+        if isinstance(value, tuple):
+            for number, inner in enumerate(value, 1):
+                found |= flat(inner, f"{path}{name}[{number}].")
+        else:
+            found[path + name] = value
+    return found
+
+
+def shown_value(cell: Element) -> int | str:
+    """Value of a field; numbers of more than a digit stand in hexadecimal with the decimal form behind."""
+    shown = main_text(cell)
+    notes = [text(note) for note in cell.findall("small")]
+    if notes:
+        assert int(shown, 16) == int(notes[0])
+    if re.fullmatch(r"-?\d+|-?0x[0-9A-F]+", shown):
+        return int(shown, 0)
+    return {"open": "XX", NOTHING: ""}.get(shown, shown)
+
+
+def test_telegrams_byte_by_byte_and_field_by_field(panels: list[tuple[Device, Page]]) -> None:
+    assert sum(len(device.examples) for device, _ in panels) > 20
+    for device, page in panels:
+        layouts = {layout.id: dict(fields_of(layout.fields)) for layout in device.layouts}
+        for example in device.examples:
+            entry = page.element(f"telegram-{example.id}")
+            shown = facts(entry)
+            same = example.printed == example.data
+            printed, used = ("Bytes", "Bytes") if same else ("Bytes printed", "Bytes used")
+            assert octets(text(shown[printed].find("code"))) == list(example.printed)
+            assert octets(text(shown[used].find("code"))) == list(example.data)
+            assert text(shown["Direction"]) == example.direction and text(shown["Layout"]) == example.layout
+            assert ("Identifier" in shown) == (example.identifier is not None)
+            if example.identifier is not None:
+                assert int(main_text(shown["Identifier"]), 16) == example.identifier
+            assert ("Node address" in shown) == (example.node is not None)
+            assert example.node is None or int(text(shown["Node address"])) == example.node
+            assert [text(p) for p in entry.findall("p")] == (
+                [" ".join(example.meaning.split())] if example.meaning else []
+            )
+            rows = table(entry, "decoded")
+            assert [octet for row in rows for octet in octets(text(row[used]))] == list(example.data)
+            values: dict[str, int | str] = {}
+            position = 0
+            for row in rows:
+                data = octets(text(row[used]))
+                if data:
+                    assert ends(text(row["Offset"])) == (str(position), str(position + len(data) - 1))
+                if not same:
+                    assert octets(text(row[printed])) == list(example.printed[position : position + len(data)])
+                position += len(data)
+                name = text(row["Field"])
+                field = layouts[example.layout][re.sub(r"\[\d+\]", "", name)]
+                values[name] = value = (
+                    text(row["Value"]) if field.type is FieldType.BYTES and data else shown_value(row["Value"])
+                )
+                meanings = [option.label for option in field.values if option.value == value]
+                expected = meanings[0] if meanings else "constant" if field.constant is not None else NOTHING
+                if not data:
+                    expected = "without bytes here"
+                assert text(row["Meaning"]) == expected
+                values |= check_parts(page, row["Field"], name, field)
+            said = flat(example.values)
+            assert said.keys() <= values.keys()
+            assert not {name: said[name] for name in said if said[name] not in ("XX", values[name])}
+            assert {name for name in values if "." not in name.rpartition("]")[2].lstrip(".")} == set(
+                flat_names(example, layouts)
+            )
+
+
+def flat_names(example: Example, layouts: dict[str, dict[str, Field]]) -> Iterator[str]:
+    """Fields that have a value of their own or a constant."""
+    fields = layouts[example.layout]
+    for name, field in fields.items():
+        group = name.rpartition(".")[0]
+        if field.type is FieldType.GROUP:
+            continue
+        if not group:
+            yield name
+        else:
+            entries = example.values[group]
+            assert isinstance(entries, tuple)
+            yield from (f"{group}[{number}].{field.name}" for number in range(1, len(entries) + 1))
+
+
+def check_parts(page: Page, cell: Element, name: str, field: Field) -> dict[str, int | str]:
+    """Parts of the number of a decoded row with their values and meanings."""
+    if not field.bits:
+        return {}
+    row = page.parents[cell]
+    body = list(page.parents[row])
+    shown = lists(body[body.index(row) + 1], direct=False)["Bits"]
+    found: dict[str, int | str] = {}
+    meanings = dict(field.bit_values)
+    for part, (key, said) in zip(field.bits, shown.items(), strict=True):
+        assert tuple(map(int, ends(key))) == (part.low, part.high)
+        match = re.fullmatch(rf"{part.label} = (open|\d+)(?: (.+))?", said)
+        assert match
+        value = "XX" if match[1] == "open" else int(match[1])
+        labels = [option.label for option in meanings.get(part.label, ()) if option.value == value]
+        assert ([match[2]] if match[2] else []) == labels[:1]
+        found[f"{name}.{part.label}"] = value
+    return found
+
+
+def test_telegrams_of_one_exchange_lead_to_each_other(panels: list[tuple[Device, Page]]) -> None:
+    for device, page in panels:
+        for example in device.examples:
+            related = facts(page.element(f"telegram-{example.id}"), "related")
+            if example.sequence is None:
+                assert "Exchange" not in related
+                continue
+            others = [other.id for other in device.examples if other.sequence == example.sequence]
+            assert text(related["Exchange"]) == f"{example.sequence}: {' → '.join(others)}"
+            links = {a.get("href") for a in related["Exchange"].iter("a")}
+            assert links == {f"#telegram-{name}" for name in others if name != example.id}
+
+
+def test_the_largest_page_stays_light(outputs: dict[str, str]) -> None:
+    assert max(len(source.encode()) for source in outputs.values()) < 500_000
 
 
 POISON = "<script>alert('1')</script>&amp;\"'"
 KEPT = {
+    Chapter: {"status"},
     Device: {"id"},
     DictionaryObject: {"kind"},
     ErrorEntry: {"kind"},
@@ -729,13 +1260,16 @@ KEPT = {
     Erratum: {"kind", "origin", "rule", "place"},
     PrintedIndex: {"place"},
     PrintedNumber: {"place"},
+    Manual: {"kind"},
+    SwitchRow: {"positions", "value"},
 }
 
 
 def poisoned(value: Any, owner: type = object, name: str = "") -> Any:
     """A model whose every text ends in characters that HTML escapes; words that code compares are kept."""
     if isinstance(value, str):
-        return value if value in ("", "none") or name in KEPT.get(owner, ()) else value + POISON
+        kept = value in ("", "none") or value.startswith("device:") or name in KEPT.get(owner, ())
+        return value if kept else value + POISON
     if callable(value) and owner is Erratum:
         return lambda variables: poisoned(value(variables), owner, name)
     if isinstance(value, tuple):
@@ -750,8 +1284,17 @@ def excerpt(model: Model) -> Model:
     """A model of one device with some facts of every sort."""
     device = model.devices[0]
     codes = tuple(code for code in device.codes if code.twin_of in {c.twin_of for c in device.codes[::9]})
-    cut = dataclasses.replace(device, codes=codes, objects=device.objects[::6], errors=device.errors[::3])
-    return dataclasses.replace(model, devices=(cut,))
+    cut = dataclasses.replace(
+        device,
+        codes=codes,
+        objects=device.objects[::6],
+        errors=device.errors[::3],
+        tables=device.tables[::6],
+        examples=device.examples[::5],
+        errata=device.errata[::4],
+    )
+    manuals = tuple(dataclasses.replace(manual, chapters=manual.chapters[:6]) for manual in model.manuals)
+    return dataclasses.replace(model, devices=(cut,), manuals=manuals)
 
 
 def test_text_of_the_model_is_escaped(model: Model) -> None:
@@ -759,14 +1302,28 @@ def test_text_of_the_model_is_escaped(model: Model) -> None:
     dirty = poisoned(clean)
     before, after = ({p: o.text for p, o in TARGET.render(m).items()} for m in (clean, dirty))
     assert before.keys() == after.keys()
+    dirty_pages: dict[str, Page] = {}
     for path in (path for path in after if path.endswith(".html")):
         assert "<script" not in after[path] and "&amp;amp;" in after[path]
-        assert [e.tag for e in Page(after[path]).elements] == [e.tag for e in Page(before[path]).elements]
-    page = Page(after[f"{clean.devices[0].id}.html"])
-    whole = text(page.root.find("body"))
-    code, error, erratum = clean.devices[0].codes[-1], clean.devices[0].errors[-1], clean.devices[0].errata[0]
-    for fact in (code.name, code.cite.chapter, error.name, erratum.used_text, clean.devices[0].title):
-        assert fact + POISON in whole
+        dirty_pages[path] = page = Page(after[path])
+        assert [e.tag for e in page.elements] == [e.tag for e in Page(before[path]).elements]
+    device = clean.devices[0]
+    code, error, erratum = device.codes[-1], device.errors[-1], device.errata[0]
+    light, group, table_, example = device.indicators[-1], device.switches[-1], device.tables[0], device.examples[0]
+    expected = {
+        f"{device.id}.html": (code.name, code.cite.chapter, error.name, device.title),
+        f"{device.id}-errata.html": (erratum.used_text, erratum.confidence, erratum.about_text[0]),
+        f"{device.id}-tables.html": (
+            *(light.rows[-1].state, light.leds[-1].name, group.labels[0], group.unit, table_.columns[0].name),
+            *(str(table_.rows[0][0]), example.name, example.direction, device.layouts[0].fields[0].title),
+            *(device.formulas[0].expression, device.formulas[0].examples[0].values[0][0]),
+        ),
+        "coverage.html": (clean.manuals[0].title, clean.manuals[0].chapters[0].title),
+        "index.html": (device.order_code, clean.manuals[0].publisher),
+    }
+    for path, found in expected.items():
+        whole = text(dirty_pages[path].root.find("body"))
+        assert not [fact for fact in found if fact + POISON not in whole]
 
 
 def test_links_hold_in_an_excerpt(model: Model) -> None:
@@ -782,6 +1339,12 @@ def test_a_device_may_lack_everything(model: Model) -> None:
         codes=(),
         objects=(),
         errors=(),
+        indicators=(),
+        switches=(),
+        tables=(),
+        formulas=(),
+        layouts=(),
+        examples=(),
         errata=(),
         drive=None,
         canopen=None,
@@ -792,8 +1355,11 @@ def test_a_device_may_lack_everything(model: Model) -> None:
     pages = {path: Page(output.text) for path, output in files.items() if path.endswith(".html")}
     assert not list(broken_links(pages))
     assert len(table(pages["index.html"].root, "devices")) == 2
-    for name in ("codes", "objects", "errors", "errata"):
-        assert "There are none." in text(pages["bare.html"].parents[pages["bare.html"].element(name)])
+    parts = {"": "codes objects errors", "-tables": "leds switches telegrams tables formulas", "-errata": "errata"}
+    for part, names in parts.items():
+        page = pages[f"bare{part}.html"]
+        for name in names.split():
+            assert "There are none." in text(page.parents[page.element(name)])
 
 
 Change = Callable[[Code], Code]
@@ -889,7 +1455,7 @@ def test_a_code_that_names_a_whole_object_stands_there(model: Model) -> None:
 
 
 def test_only_references_in_a_row_are_drawn_together(model: Model) -> None:
-    links = Links(model.devices[0])
+    links = Links(model.devices[0], "")
     odd = [CodeRef(1, 1), CodeRef(1, 3), CodeRef(1, 5), CodeRef(2, 5), CodeRef(3)]
     row = [CodeRef(7, 1), CodeRef(7, 2), CodeRef(7, 3), CodeRef(9), CodeRef(10), CodeRef(11)]
     shown = "".join(piece if isinstance(piece, str) else piece.text for piece in links.codes([*row, *odd]))

@@ -138,8 +138,9 @@ def _compare_telegrams(groups: Any, device: Device) -> None:
 
 def test_every_entry_has_a_citation(model: Model) -> None:
     for device in model.devices:
-        entries = [*device.codes, *device.objects, *device.errors, *device.indicators, *device.switches]
-        cites = [e.cite for e in entries] + [t.cite for t in (*device.tables, *device.layouts, *device.examples)]
+        cites = [c.cite for c in device.codes] + [o.cite for o in device.objects] + [e.cite for e in device.errors]
+        cites += [t.cite for t in device.indicators] + [s.cite for s in device.switches]
+        cites += [t.cite for t in device.tables] + [x.cite for x in device.layouts] + [e.cite for e in device.examples]
         assert all(cite.manual and cite.chapter for cite in cites)
 
 

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Iterator
 
-from generator.check import citations, codes, errors, objects, telegrams
+from generator.check import citations, codes, errors, gsd, objects, telegrams
 from generator.check.finding import Finding
 from generator.check.ledger import settle
 from generator.diagnostics import Problems
@@ -32,6 +32,11 @@ RULES: tuple[Callable[[Model, Device], Iterator[Finding]], ...] = (
     telegrams.formulas,
     telegrams.switches,
     telegrams.patterns,
+    gsd.identity,
+    gsd.texts,
+    gsd.lengths,
+    gsd.modules,
+    gsd.diagnosis,
 )
 """Every check: a function from a device to the disagreements that it sees."""
 

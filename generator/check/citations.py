@@ -4,7 +4,7 @@ from collections.abc import Iterator
 from typing import Protocol
 
 from generator.diagnostics import Problems, suggestion
-from generator.model import Cite, Manual, Model, Where
+from generator.model import Cite, Gsd, Manual, Model, Where
 
 
 class Cited(Protocol):
@@ -52,6 +52,21 @@ def _citations(model: Model) -> Iterator[tuple[Cite, Where]]:
         for code in device.codes:
             if code.default_cite is not None:
                 yield code.default_cite, code.where
+        if device.gsd is not None:
+            yield from _gsd_citations(device.gsd)
+
+
+def _gsd_citations(gsd: Gsd) -> Iterator[tuple[Cite, Where]]:
+    yield gsd.cite, gsd.where
+    yield gsd.bit_rates_cite, gsd.max_tsdr.where
+    sources = [gsd.max_tsdr, gsd.parameters_source, *(keyword.source for keyword in gsd.keywords)]
+    sources += [module.source for module in gsd.modules]
+    if gsd.diagnosis is not None:
+        yield gsd.diagnosis.cite, gsd.diagnosis.where
+        sources += [area.source for area in gsd.diagnosis.areas]
+    for source in sources:
+        if source.cite is not None:
+            yield source.cite, source.where
 
 
 def _check_place(cite: Cite, manual: Manual, where: Where, problems: Problems) -> None:

@@ -129,7 +129,7 @@ def _check_entry(
                 "reference",
                 erratum.where,
                 f"erratum '{erratum.id}' concerns {subject}, which the device does not have",
-                hint="name a code, object, error or led:, switch:, table:, formula:, layout:, telegram:, device: and an id",
+                hint="name a code, object or error, or a thing such as table:<id>, telegram:<id>, device:<id>",
             )
     if not erratum.about:
         problems.add("reference", erratum.where, f"erratum '{erratum.id}' concerns nothing that the device has")

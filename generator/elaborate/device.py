@@ -126,6 +126,7 @@ def device(
         cite=root.cite(),
         slots=slots,
         canopen=_canopen(root),
+        gsd=gsd_file.gsd(roots["gsd"], base, [entry.id for entry in entries]) if "gsd" in roots else None,
         attributes=root.cite("attributes") if "attributes" in root else None,
         codes=codes,
         objects=object_table.objects(files["objects"].root, object_table.Frame(standard, slots, index))
@@ -219,8 +220,7 @@ def _subjects(
             objects.extend(ObjectRef(index) for index in range(first, last + 1))
     if "errors" in files:
         for node in files["errors"].root.items("errors"):
-            value = node.get("number")
-            number = value if isinstance(value, int) else int(str(value).split()[0], 0)
+            number, _ = error_table.number(node)
             for name in dict(node.children("printed")) or ("",):
                 offset = offsets[name].error_offset if name in offsets else 0
                 errors.append(ErrorRef(str(node.get("kind")), number + offset))

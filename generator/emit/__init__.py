@@ -5,7 +5,7 @@ from importlib import import_module
 
 from generator.emit.base import Target
 
-NAMES = ("json", "eds", "c", "python", "rust")
+NAMES = ("json", "eds", "xdd", "gsd", "c", "python", "rust", "html")
 """Names of the targets: the module in this package, the folder in templates/ and the folder in generated/."""
 
 

@@ -5,7 +5,7 @@ configurations, device descriptions in XML, simulated slaves) start from it too.
 """
 
 from collections import Counter
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from enum import Enum
 from math import ceil, floor
@@ -20,6 +20,7 @@ from generator.model import (
     Device,
     DictionaryObject,
     NodeRelative,
+    Option,
     Range,
     SubIndex,
     Where,
@@ -39,6 +40,10 @@ RPDO_PARAMETERS = range(0x1400, 0x1600)
 """Communication parameters of receive PDOs, one object each."""
 TPDO_PARAMETERS = range(0x1800, 0x1A00)
 """Communication parameters of transmit PDOs, one object each."""
+RPDO_MAPPINGS = range(0x1600, 0x1800)
+"""Mapping parameters of receive PDOs, one object each."""
+TPDO_MAPPINGS = range(0x1A00, 0x1C00)
+"""Mapping parameters of transmit PDOs, one object each."""
 
 _COUNT_NAME = "Highest sub-index supported"
 
@@ -57,7 +62,8 @@ class Entry:
     """A value that an SDO can address.
 
     ``low`` and ``high`` are both given or both ``None``.  ``name`` is unique in its object.  ``bit_coded`` values
-    are shown in hexadecimal.
+    are shown in hexadecimal.  ``options`` is the selection list; without limits it holds all values there are.
+    The wire value is the value in its unit times ``scaling``.  ``length``: longest string in bytes.
     """
 
     subindex: int
@@ -69,6 +75,9 @@ class Entry:
     default: Default | None
     mappable: bool
     bit_coded: bool
+    options: tuple[Option, ...]
+    scaling: int
+    length: int | None
     remarks: tuple[Remark, ...]
     where: Where
 
@@ -91,6 +100,10 @@ class BusObject:
     cites: tuple[Cite, ...]
     errata: tuple[str, ...]
     where: Where
+
+    def entry(self, subindex: int) -> Entry | None:
+        """The value of that sub-index, ``None`` where the object has none."""
+        return next((entry for entry in self.entries if entry.subindex == subindex), None)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -120,6 +133,42 @@ class ObjectDictionary:
     def within(self, area: range) -> tuple[BusObject, ...]:
         """Objects whose index lies in ``area``."""
         return tuple(entry for entry in self.objects if entry.index in area)
+
+    def object(self, index: int) -> BusObject | None:
+        """The object of that index, ``None`` where the device has none."""
+        return next((entry for entry in self.objects if entry.index == index), None)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Configuration:
+    """What one device on a bus is set to.
+
+    ``node``: node-ID 1 ... 127.  ``bit_rate`` in kbit/s.  ``values``: wire values by (index, sub-index).
+    """
+
+    node: int
+    bit_rate: int
+    values: Mapping[tuple[int, int], int | str]
+
+
+def at_node(dictionary: ObjectDictionary, node: int) -> ObjectDictionary:
+    """The dictionary with numbers in place of the rules over the node-ID."""
+    return replace(dictionary, objects=tuple(_object_at_node(entry, node) for entry in dictionary.objects))
+
+
+def _object_at_node(entry: BusObject, node: int) -> BusObject:
+    if not any(isinstance(value.default, NodeRelative) for value in entry.entries):
+        return entry
+    entries = (
+        replace(value, default=value.default.at(node)) if isinstance(value.default, NodeRelative) else value
+        for value in entry.entries
+    )
+    return replace(entry, entries=tuple(entries))
+
+
+def number_text(entry: Entry, value: int) -> str:
+    """A wire value as files show it: hexadecimal with all digits where it is bit-coded, else decimal."""
+    return f"0x{value:0{entry.data_type.bits // 4}X}" if entry.bit_coded and value >= 0 else str(value)
 
 
 def object_dictionaries(device: Device) -> tuple[ObjectDictionary, ...]:
@@ -258,8 +307,12 @@ def _standard_entry(sub: SubIndex, name: str, index: int) -> Entry:
         scaling=1,
         default=sub.default,
         mappable=sub.pdo_mapping,
+        # Masters map no object without a default, and take no mapping entry without one.
+        needs_default=sub.pdo_mapping or index in RPDO_MAPPINGS or index in TPDO_MAPPINGS,
         # Identifiers, mapping entries and identity numbers all are U32, and read best as eight digits.
         bit_coded=index in COMMUNICATION_AREA and sub.data_type is DataType.UNSIGNED32,
+        options=sub.options,
+        length=None,
         where=sub.where,
     )
 
@@ -268,7 +321,11 @@ def _standard_entry(sub: SubIndex, name: str, index: int) -> Entry:
 
 
 def _code_object(code: Code) -> BusObject:
-    values = [(sub.number, sub.name or code.name, sub.follows or sub.default, sub.where) for sub in code.subcodes]
+    mappable = any(condition.startswith("pdo_map") for condition in code.access.conditions)
+    values = [
+        (sub.number, sub.name or code.name, sub.follows or sub.default, sub.options or code.options, sub.where)
+        for sub in code.subcodes
+    ]
     entries = tuple(
         _entry(
             subindex=subindex,
@@ -278,11 +335,15 @@ def _code_object(code: Code) -> BusObject:
             limits=code.range,
             scaling=code.scaling or 1,
             default=default,
-            mappable=any(condition.startswith("pdo_map") for condition in code.access.conditions),
+            mappable=mappable,
+            needs_default=mappable,
             bit_coded=code.is_bitfield,
+            options=options,
+            length=code.length,
             where=where,
         )
-        for subindex, name, default, where in values or [(0, code.name, code.default, code.where)]
+        for subindex, name, default, options, where in values
+        or [(0, code.name, code.default, code.options, code.where)]
     )
     return BusObject(
         index=code.index,
@@ -316,13 +377,16 @@ def _entry(
     scaling: int,
     default: Default | None,
     mappable: bool,
+    needs_default: bool,
     bit_coded: bool,
+    options: tuple[Option, ...],
+    length: int | None,
     where: Where,
 ) -> Entry:
     if default is not None and data_type.is_number == isinstance(default, str):
         raise EmitError("object-value", where, f"{default!r} is no value of the data type {data_type.canopen_name}")
     low, high, remarks = _limits(data_type, limits, scaling, where)
-    if default is None and data_type.is_number and _needs_default(low, high, mappable):
+    if default is None and data_type.is_number and (needs_default or _excludes_zero(low, high)):
         default = 0 if low is None or high is None else min(max(0, low), high)
         remarks.append(Remark.DEFAULT_ASSUMED)
     elif low is not None and high is not None and not _inside(default, low, high):
@@ -338,6 +402,9 @@ def _entry(
         default=default,
         mappable=mappable,
         bit_coded=bit_coded,
+        options=options,
+        scaling=scaling,
+        length=length,
         remarks=tuple(remarks),
         where=where,
     )
@@ -356,9 +423,9 @@ def _limits(
     return *inside, [Remark.LIMITS_CUT] if inside != (low, high) else []
 
 
-def _needs_default(low: int | None, high: int | None, mappable: bool) -> bool:
-    """Tools take 0 for a missing default and refuse it outside the limits; masters map no entry without one."""
-    return mappable or (low is not None and high is not None and not low <= 0 <= high)
+def _excludes_zero(low: int | None, high: int | None) -> bool:
+    """Whether 0, which tools take for a missing default, is not allowed."""
+    return low is not None and high is not None and not low <= 0 <= high
 
 
 def _inside(default: Default | None, low: int, high: int) -> bool:
@@ -376,13 +443,20 @@ def _object_type(declared: str, entries: Sequence[Entry]) -> str:
 
 
 def _counted(entries: tuple[Entry, ...], where: Where) -> tuple[Entry, ...]:
-    """Entries led by sub-index 0, whose default is the highest sub-index unless the manual prints another."""
+    """Entries led by sub-index 0, whose default is the highest sub-index unless the manual prints another.
+
+    A sub-index 0 that can be written counts what is in use; that is nothing where no default is printed.
+    """
     if not entries:
         return ()
     highest = entries[-1].subindex
     first = entries[0]
     if first.subindex == 0:
-        return (replace(first, default=highest) if first.default is None else first, *entries[1:])
+        if first.default is None and "w" in first.access:
+            first = replace(first, default=0, remarks=(*first.remarks, Remark.DEFAULT_ASSUMED))
+        elif first.default is None:
+            first = replace(first, default=highest)
+        return (first, *entries[1:])
     count = Entry(
         subindex=0,
         name=_COUNT_NAME,
@@ -393,6 +467,9 @@ def _counted(entries: tuple[Entry, ...], where: Where) -> tuple[Entry, ...]:
         default=highest,
         mappable=False,
         bit_coded=False,
+        options=(),
+        scaling=1,
+        length=None,
         remarks=(Remark.COUNT_ASSUMED,),
         where=where,
     )

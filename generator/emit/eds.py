@@ -1,4 +1,4 @@
-"""EDS files (CiA 306): one for each CANopen device, slot and product.
+"""EDS files (CiA 306): one for each CANopen device, slot and product.  ``text`` lays out DCF files as well.
 
 The layout is the one that every reader known takes: ASCII, CR LF, one blank line between sections, all keys in
 standard spelling and order, no key that a reader could refuse.
@@ -7,8 +7,9 @@ standard spelling and order, no key that a reader could refuse.
 import re
 import textwrap
 import unicodedata
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
+from itertools import groupby
 
 from generator import VERSION
 from generator.emit.base import EmitError, Output, Target
@@ -18,13 +19,15 @@ from generator.emit.canopen import (
     RPDO_PARAMETERS,
     TPDO_PARAMETERS,
     BusObject,
+    Configuration,
     Entry,
     ObjectDictionary,
     Remark,
+    number_text,
     object_dictionaries,
 )
 from generator.emit.environment import render as render_template
-from generator.model import Cite, DataType, Model, NodeRelative, Where
+from generator.model import DataType, Erratum, Model, NodeRelative, Where
 from generator.naming import Scope
 
 _BIT_RATES = (10, 20, 50, 125, 250, 500, 800, 1000)
@@ -40,6 +43,8 @@ _ASSUMED = {
 _OBJECT_TYPES = {"VAR": "0x7", "ARRAY": "0x8", "RECORD": "0x9"}
 _LONGEST_NAME = 241
 _COMMENT_WIDTH = 110
+_FIGURES = ("index", "standard", "value", "reference")
+"""Kinds of errata that change a figure of the file; the others change words."""
 
 _REPLACED = str.maketrans(
     {
@@ -80,8 +85,8 @@ _WORD = re.compile(r"[A-Za-z0-9]+")
 class Section:
     """Section of an object or a sub-index.
 
-    ``sub_number`` is the number of sub sections of an array or record and "" for a value; ``low``, ``high`` and
-    ``default`` are "" where the key is left out.
+    ``sub_number`` is the number of sub sections of an array or record and "" for a value; ``low``, ``high``,
+    ``default`` and ``value`` (what a DCF sets) are "" where the key is left out.
     """
 
     title: str
@@ -93,6 +98,7 @@ class Section:
     high: str = ""
     access: str = ""
     default: str = ""
+    value: str = ""
     mapping: str = ""
 
 
@@ -107,14 +113,27 @@ class ObjectList:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class FileInfo:
-    """Values of [FileInfo]; version and revision are those of the spec, the date is that of its release."""
+    """Values of [FileInfo]; version and revision are those of the spec, the date is that of its release.
+
+    ``last_eds`` is "" where the file is no DCF.
+    """
 
     name: str
+    last_eds: str
     version: str
     revision: str
     description: str
     date: str
     author: str
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Commissioning:
+    """Values of [DeviceComissioning]; the bit rate in kbit/s."""
+
+    node: int
+    name: str
+    bit_rate: int
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -145,39 +164,68 @@ def render(model: Model) -> dict[str, Output]:
     for device in model.devices:
         rendered: dict[BusObject, str] = {}
         for dictionary in object_dictionaries(device):
-            name = _file_name(dictionary)
+            name = f"{file_stem(dictionary)}.eds"
             if name.lower() in (other.lower() for other in outputs):
                 raise EmitError("name-collision", device.where, f"two EDS files would be called '{name}'")
-            outputs[name] = Output(_text(model, dictionary, name, rendered), newline="\r\n", encoding="ascii")
+            outputs[name] = output(text(model, dictionary, name, rendered))
     return outputs
 
 
 TARGET = Target("eds", render)
 
 
-def _text(model: Model, dictionary: ObjectDictionary, file_name: str, rendered: dict[BusObject, str]) -> str:
-    """Text of one file; ``rendered`` keeps the sections of objects, most of which all files of a device share."""
+def output(content: str) -> Output:
+    """A file as CiA 306 has it: ASCII with CR LF."""
+    return Output(content, newline="\r\n", encoding="ascii")
+
+
+def text(
+    model: Model,
+    dictionary: ObjectDictionary,
+    file_name: str,
+    rendered: dict[BusObject, str] | None = None,
+    *,
+    notes: Iterable[str] = (),
+    configuration: Configuration | None = None,
+    last_eds: str = "",
+) -> str:
+    """Text of an EDS, or with ``configuration`` of a DCF.
+
+    Args:
+        model: What the version and the date come from.
+        dictionary: What the file describes.
+        file_name: Name of the file, which stands in it too.
+        rendered: Keeps the sections of objects, most of which all files of a device share; not for a DCF.
+        notes: What to say in [Comments] beyond what follows from the dictionary.
+        configuration: What the device is set to.
+        last_eds: Name of the EDS that a DCF was made from.
+
+    Raises:
+        EmitError: A name, default or text cannot be written in an EDS.
+    """
     _claim_names(dictionary, file_name)
+    sections = {} if rendered is None else rendered
     for entry in dictionary.objects:
-        if entry not in rendered:
-            rendered[entry] = render_template("eds/object.eds.j2", sections=_sections(entry))
+        if entry not in sections:
+            sections[entry] = render_template("eds/object.eds.j2", sections=_sections(entry, configuration))
     return render_template(
         "eds/device.eds.j2",
-        file=_file_info(model, dictionary, file_name),
+        file=_file_info(model, dictionary, file_name, last_eds),
         device=_device_info(dictionary),
-        comments=_comments(model, dictionary),
+        commissioning=_commissioning(dictionary, configuration),
+        comments=_comments(model, dictionary, notes),
         lists=[
             ObjectList(
                 title=title,
                 indexes=tuple(f"0x{entry.index:04X}" for entry in entries),
-                sections="".join(rendered[entry] for entry in entries),
+                sections="".join(sections[entry] for entry in entries),
             )
-            for title, entries in _lists(dictionary)
+            for title, entries in lists(dictionary)
         ],
     )
 
 
-def _lists(dictionary: ObjectDictionary) -> tuple[tuple[str, list[BusObject]], ...]:
+def lists(dictionary: ObjectDictionary) -> tuple[tuple[str, list[BusObject]], ...]:
     """The three lists of objects in the order of CiA 306."""
     mandatory = [entry for entry in dictionary.objects if entry.index in MANDATORY]
     manufacturer = [entry for entry in dictionary.objects if entry.index in MANUFACTURER_AREA]
@@ -190,9 +238,14 @@ def _lists(dictionary: ObjectDictionary) -> tuple[tuple[str, list[BusObject]], .
 # Objects
 
 
-def _sections(entry: BusObject) -> list[Section]:
+def _sections(entry: BusObject, configuration: Configuration | None) -> list[Section]:
+    set_to = {
+        value.subindex: _written(value, configuration.values[entry.index, value.subindex])
+        for value in entry.entries
+        if configuration and (entry.index, value.subindex) in configuration.values
+    }
     if entry.object_type == "VAR":
-        return [_value_section(f"{entry.index:04X}", _object_name(entry), entry.entries[0])]
+        return [_value_section(f"{entry.index:04X}", _object_name(entry), entry.entries[0], set_to.get(0, ""))]
     head = Section(
         title=f"{entry.index:04X}",
         name=_object_name(entry),
@@ -200,12 +253,15 @@ def _sections(entry: BusObject) -> list[Section]:
         sub_number=str(len(entry.entries)),
     )
     values = [
-        _value_section(f"{entry.index:04X}sub{value.subindex:X}", _entry_name(value), value) for value in entry.entries
+        _value_section(
+            f"{entry.index:04X}sub{value.subindex:X}", _entry_name(value), value, set_to.get(value.subindex, "")
+        )
+        for value in entry.entries
     ]
     return [head, *values]
 
 
-def _value_section(title: str, name: str, entry: Entry) -> Section:
+def _value_section(title: str, name: str, entry: Entry, value: str) -> Section:
     return Section(
         title=title,
         name=name,
@@ -215,6 +271,7 @@ def _value_section(title: str, name: str, entry: Entry) -> Section:
         high="" if entry.high is None else str(entry.high),
         access=entry.access,
         default=_default(entry),
+        value=value,
         mapping="1" if entry.mappable else "0",
     )
 
@@ -225,13 +282,27 @@ def _default(entry: Entry) -> str:
         return ""
     if isinstance(default, NodeRelative):
         return f"$NODEID+0x{default.base:X}"
-    if isinstance(default, int):
-        return f"0x{default:0{entry.data_type.bits // 4}X}" if entry.bit_coded and default >= 0 else str(default)
+    return _written(entry, default)
+
+
+def _written(entry: Entry, value: int | str) -> str:
+    """A value as the file writes it.
+
+    Raises:
+        EmitError: It is a text that an EDS cannot hold.
+    """
+    if isinstance(value, int):
+        return number_text(entry, value)
     if entry.data_type is not DataType.VISIBLE_STRING:
-        return default.encode("utf-8").hex().upper()
-    if default and (not _PLAIN.fullmatch(default) or default.strip() != default):
-        raise EmitError("object-value", entry.where, f"an EDS cannot hold the text '{default}' as a default")
-    return default
+        return value.encode("utf-8").hex().upper()
+    if not holds(value):
+        raise EmitError("object-value", entry.where, f"an EDS cannot hold the text '{value}'")
+    return value
+
+
+def holds(value: str) -> bool:
+    """Whether an EDS can hold the text as a value: printable ASCII without what readers take for syntax."""
+    return not value or (_PLAIN.fullmatch(value) is not None and value.strip() == value)
 
 
 def _object_name(entry: BusObject) -> str:
@@ -265,25 +336,39 @@ def _claim_names(dictionary: ObjectDictionary, file_name: str) -> None:
 # Head of the file
 
 
-def _file_name(dictionary: ObjectDictionary) -> str:
+def file_stem(dictionary: ObjectDictionary) -> str:
+    """Name of the files that describe the dictionary, without its suffix."""
     parts = (dictionary.device.order_code, dictionary.slot or "", dictionary.product.label)
-    return "_".join(word for part in parts for word in _WORD.findall(_plain(part, dictionary.device.where))) + ".eds"
+    return "_".join(word for part in parts for word in _WORD.findall(_plain(part, dictionary.device.where)))
 
 
-def _file_info(model: Model, dictionary: ObjectDictionary, file_name: str) -> FileInfo:
+def caption(dictionary: ObjectDictionary) -> str:
+    """What the dictionary describes, in words."""
     device = dictionary.device
-    version, revision, *_ = model.version.split(".")
-    year, month, day = model.date.split("-")
     slot = f" in slot {dictionary.slot}" if dictionary.slot else ""
     product = f", {dictionary.product.label}" if dictionary.product.label else ""
+    return f"{device.manufacturer} {device.order_code}{slot}{product}"
+
+
+def _file_info(model: Model, dictionary: ObjectDictionary, file_name: str, last_eds: str) -> FileInfo:
+    version, revision, *_ = model.version.split(".")
+    year, month, day = model.date.split("-")
     return FileInfo(
         name=file_name,
+        last_eds=last_eds,
         version=version,
         revision=revision,
-        description=_plain(f"{device.manufacturer} {device.order_code}{slot}{product}", device.where),
+        description=_plain(caption(dictionary), dictionary.device.where),
         date=f"{month}-{day}-{year}",
         author=f"drivespec {VERSION}",
     )
+
+
+def _commissioning(dictionary: ObjectDictionary, configuration: Configuration | None) -> Commissioning | None:
+    if configuration is None:
+        return None
+    name = _plain(dictionary.device.order_code, dictionary.device.where)
+    return Commissioning(node=configuration.node, name=name, bit_rate=configuration.bit_rate)
 
 
 def _device_info(dictionary: ObjectDictionary) -> DeviceInfo:
@@ -308,11 +393,21 @@ def _device_info(dictionary: ObjectDictionary) -> DeviceInfo:
 # Comments
 
 
-def _comments(model: Model, dictionary: ObjectDictionary) -> list[str]:
-    texts = [*_origin(model, dictionary), *_assumed(dictionary), *_left_out(dictionary), *_errata(dictionary)]
-    texts += _sources(dictionary)
+def _comments(model: Model, dictionary: ObjectDictionary, notes: Iterable[str]) -> list[str]:
     where = dictionary.device.where
+    texts = [*notes, *remarks(model, dictionary)]
     return [line for text in texts for line in textwrap.wrap(_plain(text, where), _COMMENT_WIDTH)]
+
+
+def remarks(model: Model, dictionary: ObjectDictionary) -> list[str]:
+    """Where the facts come from, what was assumed, left out and corrected: what every file says of itself."""
+    return [
+        *_origin(model, dictionary),
+        *_assumed(dictionary),
+        *_left_out(dictionary),
+        *_errata(dictionary),
+        *_sources(dictionary),
+    ]
 
 
 def _origin(model: Model, dictionary: ObjectDictionary) -> Iterator[str]:
@@ -365,28 +460,47 @@ def _remarked(dictionary: ObjectDictionary, remark: Remark) -> list[tuple[str, E
 
 
 def _errata(dictionary: ObjectDictionary) -> Iterator[str]:
+    """Errata that change a figure, each with the objects that it concerns."""
     concerned: dict[str, list[str]] = {}
+    designations = sorted(entry.designation for entry in dictionary.objects)
     for entry in sorted(dictionary.objects, key=lambda entry: entry.designation):
         for name in entry.errata:
             concerned.setdefault(name, []).append(entry.designation)
-    for erratum in dictionary.device.errata:
-        if erratum.id in concerned:
-            printed = erratum.printed_text or " / ".join(place.printed for place in erratum.places)
-            yield (
-                f"Erratum {erratum.id}: printed {printed}, used {erratum.used_text}, "
-                f"concerns {', '.join(concerned[erratum.id])}."
-            )
+    found = [e for e in dictionary.device.errata if e.id in concerned and e.rule and e.kind in _FIGURES]
+    if found:
+        yield "Figures that the manual prints otherwise. The reasons, and all other errata, stand in the reference."
+    for erratum in found:
+        yield f"{_runs(concerned[erratum.id], designations)}: {_correction(erratum)} ({erratum.id})."
+
+
+def _correction(erratum: Erratum) -> str:
+    printed = erratum.printed_text or " / ".join(place.printed for place in erratum.places)
+    return f"{erratum.used_text}, printed {printed}"
+
+
+def _runs(some: Sequence[str], all_of: Sequence[str]) -> str:
+    """``some`` of the designations, three and more that follow each other as "first ... last"."""
+    places = sorted(all_of.index(designation) for designation in some)
+    parts: list[str] = []
+    for _, run in groupby(enumerate(places), lambda pair: pair[1] - pair[0]):
+        names = [all_of[place] for _, place in run]
+        parts += names if len(names) < 3 else [f"{names[0]} ... {names[-1]}"]
+    return ", ".join(parts)
 
 
 def _sources(dictionary: ObjectDictionary) -> Iterator[str]:
-    """Where the facts of each object are printed, one text for each page."""
-    pages: dict[Cite, list[str]] = {}
+    """Where the facts of each object are printed, one text for each chapter."""
+    chapters: dict[tuple[str, str], dict[int | None, list[str]]] = {}
     for entry in sorted(dictionary.objects, key=lambda entry: entry.designation):
         for cite in entry.cites:
-            pages.setdefault(cite, []).append(entry.designation)
-    for cite, designations in pages.items():
-        page = "" if cite.page is None else f" p. {cite.page}"
-        yield f"{cite.manual}, {cite.chapter}{page}: {', '.join(designations)}."
+            pages = chapters.setdefault((cite.manual, cite.chapter), {})
+            pages.setdefault(cite.page, []).append(entry.designation)
+    for (manual, chapter), pages in chapters.items():
+        places = (
+            " ".join(designations) + ("" if page is None else f" (p. {page})")
+            for page, designations in sorted(pages.items(), key=lambda item: item[0] or 0)
+        )
+        yield f"{manual}, {chapter}: {', '.join(places)}."
 
 
 # Text

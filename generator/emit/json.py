@@ -21,6 +21,7 @@ from generator.model import (
     Field,
     FieldType,
     Formula,
+    Gsd,
     IndicatorRow,
     IndicatorTable,
     Layout,
@@ -37,6 +38,7 @@ from generator.model import (
     Table,
     Values,
 )
+from generator.model.gsd import Diagnosis, Module, Source, Wording
 
 Json = Mapping[str, object]
 
@@ -75,6 +77,7 @@ def facts(model: Model, device: Device) -> Json:
         "tables": [_table(table) for table in device.tables],
         "formulas": [_formula(formula) for formula in device.formulas],
         "telegrams": _telegrams(device),
+        "gsd": _gsd(device.gsd) if device.gsd else None,
         "errata": [_erratum(erratum) for erratum in device.errata],
     }
 
@@ -387,6 +390,69 @@ def _example(example: Example) -> Json:
 
 def _values(values: Values) -> Json:
     return {k: [_values(v) for v in value] if isinstance(value, tuple) else value for k, value in values.items()}
+
+
+def _gsd(gsd: Gsd) -> Json:
+    return {
+        "file": gsd.stem,
+        "languages": dict(gsd.suffixes),
+        "cite": _cite(gsd.cite),
+        "keywords": [
+            {"keyword": keyword.name, "value": _wording(keyword.value), **_source(keyword.source)}
+            for keyword in gsd.keywords
+        ],
+        "bit_rates": [{"bit_rate": rate.name, "max_tsdr": rate.max_tsdr} for rate in gsd.bit_rates],
+        "bit_rates_cite": _cite(gsd.bit_rates_cite),
+        "max_tsdr": _source(gsd.max_tsdr),
+        "user_parameters": {"bytes": list(gsd.parameters), **_source(gsd.parameters_source)},
+        "modules": [_module(module) for module in gsd.modules],
+        "diagnosis": _diagnosis(gsd.diagnosis) if gsd.diagnosis else None,
+    }
+
+
+def _wording(value: int | Wording) -> int | Json:
+    return {"en": value.english, "de": value.german} if isinstance(value, Wording) else value
+
+
+def _source(source: Source) -> Json:
+    return {
+        "origin": source.origin.value,
+        "cite": _cite(source.cite) if source.cite else None,
+        "note": source.note or None,
+        "errata": list(source.errata),
+    }
+
+
+def _module(module: Module) -> Json:
+    return {
+        "reference": module.reference,
+        "family": module.family,
+        "name": _wording(module.name),
+        "printed": module.printed,
+        "info": _wording(module.info) if module.info else None,
+        "channel_words": module.channel,
+        "words": module.words,
+        "consistency": module.consistency.value,
+        **_source(module.source),
+    }
+
+
+def _diagnosis(diagnosis: Diagnosis) -> Json:
+    return {
+        "status_type": diagnosis.type,
+        "cite": _cite(diagnosis.cite),
+        "areas": [
+            {
+                "id": area.id,
+                "field": area.field,
+                "first_bit": area.first,
+                "last_bit": area.last,
+                "texts": {str(value): _wording(wording) for value, wording in area.texts},
+                **_source(area.source),
+            }
+            for area in diagnosis.areas
+        ],
+    }
 
 
 def _erratum(erratum: Erratum) -> Json:

@@ -10,6 +10,7 @@ from generator.model.code import Access, AttributeRow, Code, PrintedIndex, SubCo
 from generator.model.device import CanOpenFacts, Device, Drive, DriveCommand, DriveModule, Model, Response, Slot
 from generator.model.erratum import Erratum, ErratumPlace
 from generator.model.error import ErrorEntry, PrintedNumber
+from generator.model.gsd import Gsd
 from generator.model.indicator import IndicatorRow, IndicatorTable, Led, Light, Pattern, SwitchGroup, SwitchRow
 from generator.model.objects import CobId, DictionaryObject, StandardObject, StandardSubIndex, SubIndex
 from generator.model.reference import CodeRef, ErrorRef, ObjectRef
@@ -45,6 +46,7 @@ __all__ = [
     "FieldType",
     "Formula",
     "FormulaExample",
+    "Gsd",
     "IndicatorRow",
     "IndicatorTable",
     "Layout",

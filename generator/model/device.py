@@ -6,6 +6,7 @@ from generator.model.citation import Cite, Manual, Origin, Where
 from generator.model.code import Code
 from generator.model.erratum import Erratum
 from generator.model.error import ErrorEntry
+from generator.model.gsd import Gsd
 from generator.model.indicator import IndicatorTable, SwitchGroup
 from generator.model.objects import CobId, DictionaryObject, StandardObject
 from generator.model.table import Formula, Table
@@ -111,6 +112,7 @@ class Device:
     cite: Cite
     slots: tuple[Slot, ...]
     canopen: CanOpenFacts | None
+    gsd: Gsd | None
     attributes: Cite | None
     codes: tuple[Code, ...]
     objects: tuple[DictionaryObject, ...]

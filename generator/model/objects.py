@@ -11,10 +11,10 @@ from generator.model.values import Bit, BitField, DataType, Default, Option, Ran
 class SubIndex:
     """A sub-index 0 ... 255.
 
-    ``data_type`` and ``access`` are those used; ``printed_type`` and ``printed_access`` those of the manual,
-    which differ where the manual contradicts the standard.  ``codes`` are the codes that mirror it, one for
-    each slot; ``printed_codes`` what each place ("overview", "detail") prints of them.  ``abort``: the abort code that any access returns (the entry does not exist on the bus then).
-    ``signature``: ASCII text that must be written.
+    ``data_type`` and ``access`` are those used; ``printed_type`` and ``printed_access`` those of the manual, which
+    differ where the manual contradicts the standard.  ``codes`` are the codes that mirror it, in every slot;
+    ``printed_codes`` what each place ("overview", "detail") prints of them.  ``abort``: the abort code that any access
+    returns (the entry does not exist on the bus then).  ``signature``: ASCII text that must be written.
     """
 
     number: int

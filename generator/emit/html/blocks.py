@@ -77,7 +77,6 @@ class Note:
     slip: bool
     caption: Prose
     statements: tuple[Prose, ...]
-    why: Prose
 
 
 @dataclass(frozen=True, slots=True)
@@ -90,10 +89,11 @@ class Anchor:
 
 @dataclass(frozen=True, slots=True)
 class Entry:
-    """A code, object, error or erratum.
+    """A code, object, error, erratum, table or another thing that is described by itself.
 
     ``anchors``: its number, in several slots one for each.  ``marks``: short words on where it is from.
-    ``related``: facts that lead elsewhere.  ``printed``: what each place prints, verbatim.
+    ``columns``: parts of one long table that stand side by side.  ``related``: facts that lead elsewhere.
+    ``printed``: what each place prints, verbatim.
     """
 
     kind: str
@@ -103,6 +103,7 @@ class Entry:
     lead: Prose
     facts: tuple[Fact, ...]
     tables: tuple[Table, ...]
+    columns: tuple[Table, ...] = ()
     lists: tuple[ItemList, ...] = ()
     bullets: tuple[Bullets, ...] = ()
     related: tuple[Fact, ...] = ()

@@ -5,7 +5,7 @@ from fractions import Fraction
 
 from generator.emit.html.blocks import Anchor, Entry, Fact, Group, Row, Table, anchored
 from generator.emit.html.links import Links, code_id
-from generator.emit.html.lists import counts_on, from_to, runs, value_lists
+from generator.emit.html.lists import counts_on, from_to, runs, shortest_run, value_lists
 from generator.emit.html.notes import code_subject, located, notes
 from generator.emit.html.text import (
     ELLIPSIS,
@@ -33,8 +33,6 @@ _CONDITIONS = {
     "pdo_map_tx": "can be mapped into TPDOs",
 }
 _INDEX_BITS = 16
-_SHORTEST_RUN = 9
-"""Less subcodes are listed one by one even where they differ in a count alone."""
 _OVERVIEW = ("Code", "Name", "Data type", "Range", "Default", "Access")
 _VARIANTS = ("Slot", "Code", "Index", "Index hex", "Source")
 _Variants = Sequence[Code]
@@ -206,9 +204,8 @@ def _subcodes(links: Links, entry: _Variants) -> Table:
     with_names = any(sub.name for sub in code.subcodes)
     with_objects = any(mirrors for _, mirrors in rows)
     head = ("Sub", *(["Holds"] if with_names else []), "Default", *(["Object"] if with_objects else []))
-    found = tuple(
-        _row(links, entry, run, with_names, with_objects) for run in runs(rows, _says_the_same, _SHORTEST_RUN)
-    )
+    shortest = shortest_run(any(sub.description or sub.options for sub in code.subcodes))
+    found = tuple(_row(links, entry, run, with_names, with_objects) for run in runs(rows, _says_the_same, shortest))
     return Table("subcodes", head, found, "Subcodes")
 
 

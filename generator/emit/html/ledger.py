@@ -5,7 +5,7 @@ from collections.abc import Iterator, Sequence
 from generator.emit.html.blocks import Anchor, Entry, Fact, Group, Row, Table, anchored
 from generator.emit.html.links import Links, erratum_id
 from generator.emit.html.notes import is_slip, located
-from generator.emit.html.text import Prose, joined, noted
+from generator.emit.html.text import Prose, joined, noted, plain
 from generator.model import CodeRef, Erratum, ObjectRef
 
 SLIPS = "Slips of the text dump"
@@ -88,8 +88,4 @@ def _concerns(links: Links, erratum: Erratum) -> Prose:
     named = ", ".join(erratum.about_text)
     if not found:
         return named
-    return found if _text(found) == named else (f"{named}: ", *found)
-
-
-def _text(pieces: Prose) -> str:
-    return "".join(piece if isinstance(piece, str) else piece.text for piece in pieces)
+    return found if plain(found) == named else (f"{named}: ", *found)

@@ -14,6 +14,7 @@ T = TypeVar("T")
 _ERROR_PREFIXES = {"device": "e", "emergency": "emcy", "sdo_abort": "abort"}
 _ERROR_DIGITS = {"emergency": 4, "dpv1": 4, "gci": 4}
 _LONG_DIGITS = 8
+_ERRATUM = "erratum-"
 _LONGEST_LIST = 2
 _WHOLE = -2
 """Stands for the subcode or sub-index of a reference that names none; far from 0, which would go on from -1."""
@@ -42,18 +43,51 @@ def error_id(kind: str, number: int) -> str:
 
 def erratum_id(erratum: str) -> str:
     """Anchor of an entry of the ledger."""
-    return f"erratum-{erratum}"
+    return f"{_ERRATUM}{erratum}"
+
+
+def named_id(kind: str, name: str, part: str = "") -> str:
+    """Anchor of a thing that has a name alone, and of a part of it: ``table-sub-d-pins``, ``layout-sdo.command``.
+
+    ``kind`` is as in the ledger: "led", "switch", "table", "formula", "layout" or "telegram".
+    """
+    return f"{kind}-{name}.{part}" if part else f"{kind}-{name}"
+
+
+def main_page(device: Device) -> str:
+    """Page of a device with its codes, objects and errors."""
+    return f"{device.id}.html"
+
+
+def ledger_page(device: Device) -> str:
+    """Page of a device with its errata."""
+    return f"{device.id}-errata.html"
+
+
+def tables_page(device: Device) -> str:
+    """Page of a device with its LEDs, switches, telegrams and tables."""
+    return f"{device.id}-tables.html"
 
 
 class Links:
-    """Where the facts of one device stand, and which of them belong together.
+    """Where the facts of one device stand, and which of them belong together, as seen from one of its pages."""
 
-    Links lead to the device's own page; whoever spreads the entries over several pages overrides ``href``.
-    """
-
-    def __init__(self, device: Device) -> None:
-        """Take in the facts of ``device``."""
+    def __init__(self, device: Device, page: str) -> None:
+        """Take in the facts of ``device``; ``page`` is the one on which the links stand."""
         self.device = device
+        self._page = page
+        self._named = {
+            named_id(kind, entry.id)
+            for kind, entries in (
+                ("led", device.indicators),
+                ("switch", device.switches),
+                ("table", device.tables),
+                ("formula", device.formulas),
+                ("layout", device.layouts),
+                ("telegram", device.examples),
+            )
+            for entry in entries
+        }
         self._codes = {code.number: code for code in device.codes}
         self._subcodes = {(code.number, sub.number) for code in device.codes for sub in code.subcodes}
         self._objects: dict[int, DictionaryObject] = {}
@@ -85,7 +119,13 @@ class Links:
 
     def href(self, anchor: str) -> str:
         """Address of an anchor of this device."""
-        return f"#{anchor}"
+        page = self._page_of(anchor)(self.device)
+        return f"#{anchor}" if page == self._page else f"{page}#{anchor}"
+
+    def _page_of(self, anchor: str) -> Callable[[Device], str]:
+        if anchor.startswith(_ERRATUM):
+            return ledger_page
+        return tables_page if anchor.partition(".")[0] in self._named else main_page
 
     def code_of(self, ref: CodeRef) -> Code | None:
         """Code of a reference, ``None`` where the manual of the device does not describe it."""
@@ -127,7 +167,15 @@ class Links:
             case ErrorRef():
                 return self.error(subject)
             case str():
-                return Piece(subject)
+                kind, _, name = subject.partition(":")
+                if kind == "device":
+                    return Piece(subject, self.href("device") if name == self.device.id else "")
+                return self.named_thing(kind, name, subject)
+
+    def named_thing(self, kind: str, name: str, text: str, part: str = "") -> Piece:
+        """Link to a thing that has a name alone, or to a part of it; ``kind`` as in ``named_id``."""
+        known = named_id(kind, name) in self._named
+        return Piece(text, self.href(named_id(kind, name, part)) if known else "")
 
     def named(self, reference: str) -> Piece:
         """Link to a code or object by its written form, "C13372/2" or "I-1800/1"."""

@@ -12,6 +12,7 @@ T = TypeVar("T")
 
 _NUMBER = re.compile(r"(\d+)")
 _SHORTEST_RUN = 3
+_SHORTEST_PLAIN_RUN = 9
 _WIDEST_COUNT = 0xFFFF
 """Greater values are identifiers rather than counts and read better in hexadecimal."""
 
@@ -28,6 +29,11 @@ def value_lists(
         ItemList("Bit fields", tuple(_item(through(str(f.low), str(f.high)), f.label) for f in fields)),
     )
     return tuple(found for found in lists if found.items)
+
+
+def shortest_run(explained: bool) -> int:
+    """How many rows that say the same are drawn together: many plain ones, few where each is ``explained`` below."""
+    return _SHORTEST_RUN if explained else _SHORTEST_PLAIN_RUN
 
 
 def _item(key: str, label: str) -> Item:

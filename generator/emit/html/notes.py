@@ -1,4 +1,4 @@
-"""What the ledger of errata says of one entry: what is printed where, what is used instead, and why."""
+"""What the ledger of errata says beside an entry: what is printed where, and what is used instead."""
 
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -8,7 +8,7 @@ from itertools import pairwise
 from generator.emit.html.blocks import Note
 from generator.emit.html.links import Links
 from generator.emit.html.text import Piece, Prose, through
-from generator.model import Code, CodeRef, DictionaryObject, Erratum, ErrorEntry, SubIndex
+from generator.model import Code, CodeRef, DictionaryObject, Erratum, ErratumPlace, ErrorEntry, SubIndex
 
 _ANYTHING = "..."
 _PLACE_WORDS = {"chapter": "own table", "table": "table of attributes", "detail": "detailed description", "base": ""}
@@ -32,16 +32,25 @@ class Printed:
 
 @dataclass(frozen=True, slots=True)
 class Subject:
-    """One fact: ids of the errata that concern it, what is printed otherwise, the variables of ledger formulas."""
+    """One fact: ids of the errata that concern it, what is printed otherwise, the variables of ledger formulas.
+
+    ``name`` is what the ledger calls it in the places that it lists, "" where it goes by no designation.
+    """
 
     errata: tuple[str, ...]
     printed: tuple[Printed, ...]
     variables: Mapping[str, int]
+    name: str = ""
+
+
+def named_subject(errata: tuple[str, ...]) -> Subject:
+    """A fact that has a name alone, such as a table: only the ledger itself tells what is printed of it."""
+    return Subject(errata, (), {})
 
 
 def code_subject(code: Code) -> Subject:
     """What is printed of a code otherwise than it is used: indexes and names."""
-    return Subject(code.errata, tuple(_code_printed(code)), {"code": code.number, "index": code.index})
+    return Subject(code.errata, tuple(_code_printed(code)), {"code": code.number, "index": code.index}, str(code.ref))
 
 
 def _code_printed(code: Code) -> Iterator[Printed]:
@@ -87,7 +96,7 @@ def object_subject(entry: DictionaryObject) -> Subject:
     """What is printed of the sub-indexes of an object otherwise than it is used: data types and accesses."""
     names = (*entry.errata, *(name for sub in entry.subindexes for name in sub.errata))
     printed = tuple(item for sub in entry.subindexes for item in _subindex_printed(sub))
-    return Subject(tuple(dict.fromkeys(names)), printed, {"index": entry.index})
+    return Subject(tuple(dict.fromkeys(names)), printed, {"index": entry.index}, entry.designation)
 
 
 def _subindex_printed(sub: SubIndex) -> Iterator[Printed]:
@@ -117,8 +126,9 @@ def code_run(codes: Sequence[CodeRef]) -> str:
 def notes(links: Links, subjects: Iterable[Subject]) -> tuple[Note, ...]:
     """Ledger entries that concern any of the subjects (the slots of one entry), in the order of the ledger."""
     subjects = tuple(subjects)
-    concerning = ((e, [s for s in subjects if e.id in s.errata]) for e in links.device.errata)
-    return tuple(_note(links, erratum, concerned) for erratum, concerned in concerning if concerned)
+    names = {name for subject in subjects for name in subject.errata}
+    concerning = [erratum for erratum in links.device.errata if erratum.id in names] if names else []
+    return tuple(_note(links, erratum, [s for s in subjects if erratum.id in s.errata]) for erratum in concerning)
 
 
 def _note(links: Links, erratum: Erratum, subjects: Sequence[Subject]) -> Note:
@@ -131,9 +141,8 @@ def _note(links: Links, erratum: Erratum, subjects: Sequence[Subject]) -> Note:
     kind = "Slip of the text dump " if slip else "Erratum "
     return Note(
         slip=slip,
-        caption=(kind, links.erratum(erratum.id), f", confidence {erratum.confidence}"),
+        caption=(kind, links.erratum(erratum.id), f" says why; confidence {erratum.confidence}"),
         statements=tuple(map(_together, explained.values())) or tuple(_recorded(erratum, subjects)),
-        why=links.prose(erratum.why),
     )
 
 
@@ -169,14 +178,31 @@ def _explains(erratum: Erratum, item: Printed, variables: Mapping[str, int]) -> 
 def _recorded(erratum: Erratum, subjects: Sequence[Subject]) -> list[Prose]:
     """What the ledger itself says was printed."""
     if erratum.places:
-        used = " / ".join(dict.fromkeys(str(erratum.used(dict(s.variables))) for s in subjects))
-        places = [(f"{p.location}{_page(p.page)} prints ", Piece(p.printed, tag="s")) for p in erratum.places]
+        used = " / ".join(dict.fromkeys(_used(erratum, s) for s in subjects))
+        places = [
+            (f"{place.location}{_page(place.page)} prints ", Piece(place.printed, tag="s"))
+            for place in _own_places(erratum.places, subjects)
+        ]
         return [*places, ("Used: ", Piece(used, tag="b"))]
     place = located(" ".join(erratum.place), None)
-    if erratum.printed is None:
-        return [_statement(place, erratum.printed_text, erratum.used_text)]
-    pairs = [(str(erratum.printed(dict(s.variables))), str(erratum.used(dict(s.variables)))) for s in subjects]
+    pairs = [(_printed(erratum, s), _used(erratum, s)) for s in subjects]
     return [_statement(place, printed, used) for printed, used in dict.fromkeys(pairs)]
+
+
+def _own_places(places: Sequence[ErratumPlace], subjects: Sequence[Subject]) -> Sequence[ErratumPlace]:
+    """The places that name one of the subjects; where none does, all that the ledger lists."""
+    own = [place for place in places if any(s.name and s.name in place.location for s in subjects)]
+    return own or places
+
+
+def _printed(erratum: Erratum, subject: Subject) -> str:
+    if erratum.printed is None or not subject.variables:
+        return erratum.printed_text
+    return str(erratum.printed(dict(subject.variables)))
+
+
+def _used(erratum: Erratum, subject: Subject) -> str:
+    return str(erratum.used(dict(subject.variables))) if subject.variables else erratum.used_text
 
 
 def located(place: str, page: int | None) -> str:

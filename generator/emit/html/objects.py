@@ -4,7 +4,7 @@ from collections.abc import Callable, Iterator, Sequence
 
 from generator.emit.html.blocks import Anchor, Entry, Fact, Group, Row, Table, anchored
 from generator.emit.html.links import Links, object_id
-from generator.emit.html.lists import counts_on, from_to, runs, value_lists
+from generator.emit.html.lists import counts_on, from_to, runs, shortest_run, value_lists
 from generator.emit.html.notes import notes, object_subject
 from generator.emit.html.text import (
     NONE,
@@ -21,8 +21,6 @@ from generator.model import CodeRef, DictionaryObject, ErrorRef, SubIndex
 
 _INDEX_BITS = 16
 _ONE_DIGIT = 9
-_SHORTEST_RUN = 9
-"""Less sub-indexes are listed one by one even where they differ in a count alone."""
 _OVERVIEW = ("Object", "Name", "Type", "Entries", "Codes")
 _SUBINDEXES = ("Sub", "Name", "Data type", "Access", "Default", "Range", "PDO", "Codes")
 
@@ -50,7 +48,8 @@ def _anchor(entry: DictionaryObject) -> Anchor:
 def object_entry(links: Links, entry: DictionaryObject) -> Entry:
     """Entry for an object."""
     origin = shown_origin(entry.origin)
-    rows = tuple(_row(links, entry, run) for run in runs(entry.subindexes, _same_in(links, entry), _SHORTEST_RUN))
+    shortest = shortest_run(any(map(_is_explained, entry.subindexes)))
+    rows = tuple(_row(links, entry, run) for run in runs(entry.subindexes, _same_in(links, entry), shortest))
     return Entry(
         kind="object",
         anchors=(_anchor(entry),),
@@ -110,6 +109,10 @@ def _content(sub: SubIndex) -> tuple[object, ...]:
         sub.description,
         sub.errata,
     )
+
+
+def _is_explained(sub: SubIndex) -> bool:
+    return bool(sub.description or sub.options or sub.bits or sub.fields)
 
 
 def _row(links: Links, entry: DictionaryObject, run: Sequence[SubIndex]) -> Row:

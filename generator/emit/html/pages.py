@@ -1,24 +1,34 @@
-"""Pages of the reference: the first page, and one page a device that is a composition of its entries."""
+"""Pages of the reference: the first page, the sources, and the pages of a device, which are composed of its entries."""
 
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
 from generator.emit.html.blocks import Fact, Group, Row, Table
 from generator.emit.html.codes import code_group
+from generator.emit.html.coverage import Coverage, coverage, edition, listed_sources
 from generator.emit.html.drive import DriveSection, drive_section
 from generator.emit.html.errors import error_group
 from generator.emit.html.ledger import ledger_groups
-from generator.emit.html.links import Links
+from generator.emit.html.links import Links, ledger_page, main_page, tables_page
 from generator.emit.html.objects import object_group
-from generator.emit.html.text import NONE, Piece, Prose, joined, manual_link, through
+from generator.emit.html.panel import led_group, switch_group
+from generator.emit.html.tables import formula_group, table_group
+from generator.emit.html.telegrams import example_group, layout_group
+from generator.emit.html.text import COVERAGE, Piece, Prose, joined, manual_id, manual_link, through
 from generator.model import Code, CodeRef, Device, DictionaryObject, ErrorEntry, Manual, Model
 
 _OBJECT_KINDS = {"canopen": "CANopen object dictionary", "profidrive": "PROFIdrive parameters"}
-_MANUAL_KINDS = {"public": "public document"}
-_STATUSES = {"not-applicable": "without facts of this kind", "lost": "lost in the text dump", "pending": "not yet"}
 _DEVICES = ("Device", "Type", "Bus", "Manual", "Edition", "Codes", "Objects", "Errors", "Errata")
-_CHAPTERS = ("Chapter", "Title", "Page", "State", "Note")
-_WEB = ("https://", "http://")
+_MAIN = "Codes, objects, errors"
+_TABLES = "LEDs, switches, telegrams, tables"
+_LEDGER = "Errata"
+_COVERAGE = "Coverage of the manual"
+_ERRATA = "What is printed wrong, what is used instead, why, and how sure that is."
+_LEDS = (
+    "Each row gives a pattern in words, as the spec writes it, and drawn. "
+    "Where the manual prints no time, the rhythm of the drawing is free."
+)
+_TELEGRAMS = "Offsets count bytes from 0; bit 0 is the least significant."
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,38 +51,65 @@ class NavItem:
 
 @dataclass(frozen=True, slots=True)
 class Section:
-    """Groups of entries below one heading; ``lead`` says what is meant, "" where the title does."""
+    """Groups of entries below one heading; ``lead`` says what is meant, "" where the title does.
+
+    ``blinks``: it has drawings that move, which a reader can stop.
+    """
 
     id: str
     title: str
     lead: str
     groups: tuple[Group, ...]
+    blinks: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class PageLink:
+    """A page of a device; ``href`` is "" for the page that shows the link."""
+
+    text: str
+    href: str
+
+
+@dataclass(frozen=True, slots=True)
+class Head:
+    """What the pages of a device have in common; ``after`` names the manual."""
+
+    title: str
+    subtitle: str
+    release: Release
+    after: Prose
+    pages: tuple[PageLink, ...]
 
 
 @dataclass(frozen=True, slots=True)
 class DevicePage:
-    """Everything on the page of a device."""
+    """The page of a device with its codes, objects and errors."""
 
-    title: str
-    release: Release
-    after: Prose
+    head: Head
     facts: tuple[Fact, ...]
     nav: tuple[NavItem, ...]
     sections: tuple[Section, ...]
     drive: DriveSection | None
-    errata: Section
+
+    @property
+    def release(self) -> Release:
+        """What the page says of itself."""
+        return self.head.release
 
 
 @dataclass(frozen=True, slots=True)
-class Source:
-    """A manual, standard or public document; ``tally`` sums up what became of its chapters."""
+class SectionsPage:
+    """A page of a device that is all sections of entries."""
 
-    id: str
-    name: str
-    title: str
-    facts: tuple[Fact, ...]
-    tally: str
-    chapters: Table
+    head: Head
+    nav: tuple[NavItem, ...]
+    sections: tuple[Section, ...]
+
+    @property
+    def release(self) -> Release:
+        """What the page says of itself."""
+        return self.head.release
 
 
 @dataclass(frozen=True, slots=True)
@@ -81,17 +118,33 @@ class IndexPage:
 
     release: Release
     devices: Table
-    sources: tuple[Source, ...]
+    sources: Table
+
+
+@dataclass(frozen=True, slots=True)
+class CoveragePage:
+    """Everything on the page of the sources."""
+
+    release: Release
+    coverage: Coverage
 
 
 def index_page(model: Model) -> IndexPage:
     """The first page: devices and sources."""
-    manuals = {device.manual.id: device.manual for device in model.devices}.values()
     return IndexPage(
-        release=_release(model, manuals),
+        release=_release(model, _manuals(model)),
         devices=Table("devices", _DEVICES, tuple(map(_device_row, model.devices))),
-        sources=tuple(map(_source, model.manuals)),
+        sources=listed_sources(model),
     )
+
+
+def coverage_page(model: Model) -> CoveragePage:
+    """The page of the sources."""
+    return CoveragePage(_release(model, _manuals(model)), coverage(model))
+
+
+def _manuals(model: Model) -> Iterable[Manual]:
+    return {device.manual.id: device.manual for device in model.devices}.values()
 
 
 def _release(model: Model, manuals: Iterable[Manual]) -> Release:
@@ -100,77 +153,90 @@ def _release(model: Model, manuals: Iterable[Manual]) -> Release:
 
 
 def _device_row(device: Device) -> Row:
-    counts = (device.codes, device.objects, device.errors, device.errata)
+    counts = (device.codes, device.objects, device.errors)
     return Row(
         (
-            (Piece(device.title, f"{device.id}.html"),),
+            (Piece(device.title, main_page(device)), " ", Piece(_TABLES, tables_page(device), "small")),
             device.order_code,
             device.bus,
             (manual_link(device.manual.id),),
-            _edition(device.manual),
+            edition(device.manual),
             *(str(len(facts)) for facts in counts),
+            (Piece(str(len(device.errata)), ledger_page(device)),),
         )
     )
 
 
-def _edition(manual: Manual) -> str:
-    return manual.edition + (f", {manual.date}" if manual.date else "")
-
-
-def _source(manual: Manual) -> Source:
-    states = [_STATUSES.get(chapter.status or NONE, chapter.status or NONE) for chapter in manual.chapters]
-    rows = tuple(
-        Row((chapter.number, chapter.title, str(chapter.page or NONE), state, chapter.note or ""))
-        for chapter, state in zip(manual.chapters, states, strict=True)
-    )
-    return Source(
-        id=f"manual-{manual.id}",
-        name=manual.id,
-        title=manual.title,
-        facts=tuple(_source_facts(manual)),
-        tally=", ".join(f"{states.count(state)} {state}" for state in dict.fromkeys(states)),
-        chapters=Table("chapters", _CHAPTERS, rows),
-    )
-
-
-def _source_facts(manual: Manual) -> Iterator[Fact]:
-    yield Fact("Kind", _MANUAL_KINDS.get(manual.kind, manual.kind))
-    yield Fact("Publisher", manual.publisher)
-    yield Fact("Edition", manual.edition)
-    if manual.date:
-        yield Fact("Date", manual.date)
-    if manual.document:
-        yield Fact("Document", manual.document)
-    if manual.pages is not None:
-        yield Fact("Pages", str(manual.pages))
-    if manual.url:
-        yield Fact("Address", (Piece(manual.url, manual.url if manual.url.startswith(_WEB) else ""),))
-
-
 def device_page(model: Model, device: Device) -> DevicePage:
     """The page of a device."""
-    links = Links(device)
+    links = Links(device, main_page(device))
     codes = Section("codes", "Codes", "", _code_groups(links, device.codes))
     objects = Section("objects", "Objects", "", _object_groups(links, device.objects))
     errors = Section("errors", "Errors", "", _error_groups(links, device.errors))
-    lead = "What is printed wrong, and what is used instead."
-    errata = Section("errata", "Errata", lead, ledger_groups(links, device.errata))
-    manual = device.manual
     return DevicePage(
-        title=device.title,
-        release=_release(model, [manual]),
-        after=(f"{manual.title}, ", manual_link(manual.id), f", edition {_edition(manual)}"),
+        head=_head(model, device, "", main_page(device)),
         facts=tuple(_facts(links, device)),
         nav=(
             _nav(codes, len(device.codes)),
             _nav(objects, len(device.objects)),
             _nav(errors, len(device.errors)),
             *([NavItem(Piece("Base drive", "#drive"))] if device.drive else []),
-            _nav(errata, len(device.errata)),
         ),
         sections=(codes, objects, errors),
         drive=drive_section(links, device.drive) if device.drive else None,
-        errata=errata,
+    )
+
+
+def device_ledger_page(model: Model, device: Device) -> SectionsPage:
+    """The page of a device with the ledger of its errata."""
+    links = Links(device, ledger_page(device))
+    errata = Section("errata", "Errata", _ERRATA, ledger_groups(links, device.errata))
+    return SectionsPage(
+        head=_head(model, device, _LEDGER, ledger_page(device)),
+        nav=(_nav(errata, len(device.errata)),),
+        sections=(errata,),
+    )
+
+
+def device_tables_page(model: Model, device: Device) -> SectionsPage:
+    """The page of a device with what has a name alone: LEDs, switches, telegrams, tables and formulas."""
+    links = Links(device, tables_page(device))
+    leds = tuple(group for group in (led_group(links, device.indicators),) if group.entries)
+    switches = tuple(group for group in (switch_group(links, device.switches),) if group.entries)
+    telegrams = (layout_group(links, device.layouts), example_group(links, device.examples))
+    tables = tuple(group for group in (table_group(links, device.tables),) if group.entries)
+    formulas = tuple(group for group in (formula_group(links, device.formulas),) if group.entries)
+    sections = (
+        (Section("leds", "LEDs", _LEDS, leds, blinks=bool(leds)), len(device.indicators)),
+        (Section("switches", "DIP switches", "", switches), len(device.switches)),
+        (
+            Section("telegrams", "Telegrams", _TELEGRAMS, tuple(group for group in telegrams if group.entries)),
+            len(device.layouts) + len(device.examples),
+        ),
+        (Section("tables", "Tables", "", tables), len(device.tables)),
+        (Section("formulas", "Formulas", "", formulas), len(device.formulas)),
+    )
+    return SectionsPage(
+        head=_head(model, device, _TABLES, tables_page(device)),
+        nav=tuple(_nav(section, count) for section, count in sections),
+        sections=tuple(section for section, _ in sections),
+    )
+
+
+def _head(model: Model, device: Device, subtitle: str, page: str) -> Head:
+    manual = device.manual
+    pages = (
+        (_MAIN, main_page(device)),
+        (_TABLES, tables_page(device)),
+        (_LEDGER, ledger_page(device)),
+        (_COVERAGE, f"{COVERAGE}#{manual_id(manual.id)}"),
+    )
+    return Head(
+        title=device.title,
+        subtitle=subtitle,
+        release=_release(model, [manual]),
+        after=(f"{manual.title}, ", manual_link(manual.id), f", edition {edition(manual)}"),
+        pages=tuple(PageLink(text, "" if address == page else address) for text, address in pages),
     )
 
 

@@ -13,6 +13,9 @@ NONE = "\N{EN DASH}"
 ELLIPSIS = "\N{HORIZONTAL ELLIPSIS}"
 """Stands between the ends of a run or range."""
 
+COVERAGE = "coverage.html"
+"""Page of the sources."""
+
 _NO_BREAK = "\N{NO-BREAK SPACE}"
 
 _ORIGINS = {
@@ -26,11 +29,15 @@ _REFERENCE = re.compile(r"\b(?:C\d{5}(?:/\d+)?|I-[0-9A-F]{4}(?:/\d+)?)\b")
 
 @dataclass(frozen=True, slots=True)
 class Piece:
-    """A piece of running text that leads somewhere, or that a text-level element sets apart; "" for neither."""
+    """A piece of running text that leads somewhere, or that a text-level element sets apart; "" for neither.
+
+    ``css`` holds classes of that element.
+    """
 
     text: str
     href: str = ""
     tag: str = ""
+    css: str = ""
 
 
 Prose = str | tuple[str | Piece, ...]
@@ -125,9 +132,19 @@ def place_of(chapter: str, page: int | None) -> str:
     return ", ".join(part for part in parts if part)
 
 
+def manual_id(manual: str) -> str:
+    """Anchor of a manual on the page of sources and on the first page."""
+    return f"manual-{manual}"
+
+
 def manual_link(manual: str) -> Piece:
-    """Link to what the first page tells of a manual."""
-    return Piece(manual, f"index.html#manual-{manual}", "cite")
+    """Link to what the page of sources tells of a manual."""
+    return Piece(manual, f"{COVERAGE}#{manual_id(manual)}", "cite")
+
+
+def plain(text: Prose) -> str:
+    """Running text without its links."""
+    return text if isinstance(text, str) else "".join(p if isinstance(p, str) else p.text for p in text)
 
 
 def prose(text: str, resolve: Callable[[str], Piece]) -> Prose:

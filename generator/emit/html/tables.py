@@ -1,0 +1,107 @@
+"""Other tables and formulas as entries of the reference."""
+
+from collections.abc import Iterator, Sequence
+
+from generator.emit.html.blocks import Anchor, Bullets, Entry, Fact, Group, Row, Table, anchored
+from generator.emit.html.links import Links, named_id
+from generator.emit.html.notes import named_subject, notes
+from generator.emit.html.text import NONE, Piece, Prose, shown_origin
+from generator.model import Column, Formula
+from generator.model import Table as PrintedTable
+
+_NOTHING_PRINTED = "-"
+"""Cell of a table in which the manual prints a dash or nothing."""
+_OVERVIEW = ("Table", "Name", "Of", "Rows")
+_FORMULAS = ("Formula", "Name", "Expression")
+
+
+def table_group(links: Links, tables: Sequence[PrintedTable]) -> Group:
+    """Tables below one heading."""
+    rows = tuple(Row((anchored(_table_anchor(t)), t.name, _kind(t), str(len(t.rows)))) for t in tables)
+    entries = tuple(table_entry(links, table) for table in tables)
+    return Group("tables-all", "All tables", Table("overview", _OVERVIEW, rows), entries)
+
+
+def _kind(table: PrintedTable) -> str:
+    return table.kind.replace("-", " ")
+
+
+def _table_anchor(table: PrintedTable) -> Anchor:
+    return Anchor(named_id("table", table.id), table.id)
+
+
+def table_entry(links: Links, table: PrintedTable) -> Entry:
+    """Entry for a table."""
+    origin = shown_origin(table.origin)
+    remarks = Bullets("Notes", tuple(map(links.prose, table.notes)))
+    rows = tuple(_row(links, table, number, cells) for number, cells in enumerate(table.rows, 1))
+    return Entry(
+        kind="table",
+        anchors=(_table_anchor(table),),
+        name=table.name,
+        marks=(origin,) if origin else (),
+        lead="",
+        facts=(Fact("Table of", _kind(table)), Fact("Source", links.source(table.cite))),
+        tables=(Table("printed", tuple(map(_heading, table.columns)), rows),),
+        bullets=(remarks,) if remarks.items else (),
+        notes=notes(links, [named_subject(table.errata)]),
+    )
+
+
+def _heading(column: Column) -> str:
+    return f"{column.name} [{column.unit}]" if column.unit else column.name
+
+
+def _row(links: Links, table: PrintedTable, number: int, cells: Sequence[int | str]) -> Row:
+    return Row(tuple(_cell(links, cell) for cell in cells), id=named_id("table", table.id, str(number)))
+
+
+def _cell(links: Links, cell: int | str) -> Prose:
+    if isinstance(cell, int):
+        return str(cell)
+    return NONE if cell == _NOTHING_PRINTED else links.prose(cell)
+
+
+def formula_group(links: Links, formulas: Sequence[Formula]) -> Group:
+    """Formulas below one heading."""
+    rows = tuple(Row((anchored(_formula_anchor(f)), f.name, f.expression)) for f in formulas)
+    entries = tuple(formula_entry(links, formula) for formula in formulas)
+    return Group("formulas-all", "All formulas", Table("overview", _FORMULAS, rows), entries)
+
+
+def _formula_anchor(formula: Formula) -> Anchor:
+    return Anchor(named_id("formula", formula.id), formula.id)
+
+
+def formula_entry(links: Links, formula: Formula) -> Entry:
+    """Entry for a formula."""
+    return Entry(
+        kind="formula",
+        anchors=(_formula_anchor(formula),),
+        name=formula.name,
+        marks=(),
+        lead=links.prose(formula.note),
+        facts=tuple(_formula_facts(links, formula)),
+        tables=(_examples(links, formula),) if formula.examples else (),
+        notes=notes(links, [named_subject(formula.errata)]),
+    )
+
+
+def _formula_facts(links: Links, formula: Formula) -> Iterator[Fact]:
+    yield Fact("Expression", (Piece(formula.expression, tag="code"),))
+    if formula.unit:
+        yield Fact("Unit", formula.unit)
+    yield Fact("Source", links.source(formula.cite))
+
+
+def _examples(links: Links, formula: Formula) -> Table:
+    """Worked examples, a column for each name that any of them gives."""
+    names = tuple(dict.fromkeys(name for example in formula.examples for name, _ in example.values))
+    result = f"Result [{formula.unit}]" if formula.unit else "Result"
+    rows = []
+    for number, example in enumerate(formula.examples, 1):
+        given = {name: str(value) for name, value in example.values}
+        cells = (str(number), *(given.get(name, NONE) for name in names), str(example.result))
+        row_id = named_id("formula", formula.id, str(number))
+        rows.append(Row((*cells, links.source(example.cite)), id=row_id))
+    return Table("worked", ("Example", *names, result, "Source"), tuple(rows), "Worked examples")
