@@ -21,6 +21,8 @@ from generator.naming import words
 _NODES = range(1, 128)
 _HEXADECIMAL = re.compile(r"0[xX][0-9A-Fa-f]+")
 _DECIMAL = re.compile(r"[+-]?[0-9]+(\.[0-9]+)?")
+_LONGEST = 1000
+"""Characters that a setting may have; texts of drives are much shorter."""
 _EXAMPLE = "C13351=2, C13320/1=0x185 or I-1017=100"
 
 
@@ -85,18 +87,12 @@ def _choice(option: str, typed: str | None, names: Sequence[str], what: str) -> 
         message = f"{option} is missing, as there are several {what}" if names else f"there are no {what}"
         raise MistakesError([Mistake(option="", argument="", message=message, hint=suggestion("", names, what))])
     for place, name in enumerate(names):
-        if words(name) == words(typed):
+        if words(typed) and words(name) == words(typed):
             return place
-    raise MistakesError(
-        [
-            Mistake(
-                option=option,
-                argument=typed,
-                message=f"'{typed}' is not among the {what}",
-                hint=suggestion(typed, names, what),
-            )
-        ]
-    )
+    nameless = list(names) == [""]
+    message = f"there are no {what}" if nameless else f"'{typed}' is not among the {what}"
+    hint = f"leave {option} out" if nameless else suggestion(typed, names, what)
+    raise MistakesError([Mistake(option=option, argument=typed, message=message, hint=hint)])
 
 
 def _node(typed: str, mistakes: list[Mistake]) -> int:
@@ -122,9 +118,7 @@ def _bit_rate(typed: str, dictionary: ObjectDictionary, mistakes: list[Mistake])
 
 def _whole(typed: str) -> int:
     """A number as typed, -1 for other text."""
-    if _HEXADECIMAL.fullmatch(typed):
-        return int(typed, 16)
-    return int(typed) if typed.isascii() and typed.isdigit() else -1
+    return int(typed) if re.fullmatch("[0-9]{1,9}", typed) else -1
 
 
 # What is set to what
@@ -145,6 +139,8 @@ class _Setting:
         self._value = value.strip()
         if not equals or not self._name or not self._value:
             raise self._mistake(f"'{argument}' is not NAME=VALUE", hint=f"write it like {_EXAMPLE}")
+        if len(argument) > _LONGEST:
+            raise self._mistake(f"a setting has at most {_LONGEST} characters")
 
     def into(self, values: dict[tuple[int, int], int | str]) -> None:
         """Add the setting to the values."""
@@ -270,7 +266,8 @@ class _Setting:
 
     def _labelled(self, reference: CodeRef | ObjectRef, entry: Entry) -> int | None:
         """Value whose label was typed, ``None`` where there is none."""
-        found = {option.value for option in entry.options if words(option.label) == words(self._value)}
+        typed = words(self._value)
+        found = {option.value for option in entry.options if typed and words(option.label) == typed}
         if len(found) > 1:
             numbers = ", ".join(str(value) for value in sorted(found))
             message = f"'{self._value}' stands more than once in the selection list of {reference}"

@@ -57,7 +57,7 @@ def _lines(mistake: Mistake) -> Iterable[str]:
 
 def as_json(mistakes: Iterable[Mistake]) -> str:
     """Mistakes for programs: a JSON list of objects."""
-    return json.dumps([_object(mistake) for mistake in mistakes], indent=2, ensure_ascii=False) + "\n"
+    return json.dumps([_object(mistake) for mistake in mistakes], indent=2) + "\n"
 
 
 def _object(mistake: Mistake) -> dict[str, object]:

@@ -14,6 +14,8 @@ import pytest
 from canopen.objectdictionary import ODRecord, ODVariable
 from canopen_facts import NODE, Case, all_cases, spoken
 from eds_utils.core.file_io.read_eds import read_eds
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from generator import mistakes
 from generator.cli import main
@@ -33,10 +35,10 @@ SETTINGS = {
 """Settings as typed, and the place and wire value that they mean; the run is three places."""
 
 
-def _request(*settings: str, **arguments: str | None) -> Request:
-    given: dict[str, str | None] = {"device": "e94aycca", "slot": "MXI1", "product": "9400_StateLine"}
-    given |= {"node": str(NODE), "bit_rate": "250"} | arguments
-    return Request(settings=settings, **given)  # type: ignore[arg-type]
+def _request(*given_settings: str, **arguments: str | None) -> Request:
+    typed: dict[str, str | None] = {"device": "e94aycca", "slot": "MXI1", "product": "9400_StateLine"}
+    typed |= {"node": str(NODE), "bit_rate": "250"} | arguments
+    return Request(settings=given_settings, **typed)  # type: ignore[arg-type]
 
 
 def _values() -> dict[tuple[int, int], int]:
@@ -183,7 +185,7 @@ def test_every_slot_and_product_can_be_configured(model: Model, generated: Path,
 
 
 @pytest.mark.parametrize(
-    ("settings", "message", "detail"),
+    ("setting", "message", "detail"),
     [
         ("C13351=7", "7 is not in the selection list of C13351", "0 (500 kbps), 1 (250 kbps)"),
         ("C13351=123 kbps", "'123 kbps' is no value of C13351", "did you mean '125 kbps'"),
@@ -215,18 +217,42 @@ def test_every_slot_and_product_can_be_configured(model: Model, generated: Path,
         ("C13350=6", "C13350 is the node address", f"--node: {NODE}"),
     ],
 )
-def test_wrong_settings(model: Model, settings: str, message: str, detail: str) -> None:
+def test_wrong_settings(model: Model, setting: str, message: str, detail: str) -> None:
     with pytest.raises(MistakesError) as caught:
-        files(model, _request(settings))
+        files(model, _request(setting))
     (mistake,) = caught.value.mistakes
-    assert (mistake.option, mistake.argument, mistake.message) == ("--set", settings, message)
+    assert (mistake.option, mistake.argument, mistake.message) == ("--set", setting, message)
     assert detail in mistakes.as_text([mistake])
 
 
+@pytest.mark.parametrize("digits", ["C13350=" + "9" * 5000, "C13320/" + "9" * 5000 + "=1", "I-1017=0x" + "F" * 900])
+def test_long_numbers(model: Model, digits: str) -> None:
+    with pytest.raises(MistakesError):
+        files(model, _request(digits))
+    with pytest.raises(MistakesError):
+        files(model, _request(node="9" * 5000))
+
+
+_PIECES = st.sampled_from(
+    ["C13351", "C13320", "I-1800", "I-1029", "/", "1", "=", " ", "...", "0x", "-", ".", "$NODEID", "+"]
+)
+
+
+@settings(max_examples=60, deadline=None)
+@given(st.one_of(st.text(max_size=20), st.lists(_PIECES, max_size=8).map("".join)))
+def test_any_setting_is_taken_or_refused(model: Model, argument: str) -> None:
+    try:
+        made = files(model, _request(argument))
+    except MistakesError as error:
+        assert mistakes.as_text(error.mistakes).endswith("\n")
+    else:
+        assert all(reader.read(output.data()).problems == () for output in made.values())
+
+
 def test_a_setting_that_stands_twice(model: Model) -> None:
-    for settings in (["I-1017=5", "I-1017/0=5"], ["C13381=5", f"I-{24575 - 13381:04X}=6"]):
+    for twice in (["I-1017=5", "I-1017/0=5"], ["C13381=5", f"I-{24575 - 13381:04X}=6"]):
         with pytest.raises(MistakesError, match="is set twice"):
-            files(model, _request(*settings))
+            files(model, _request(*twice))
 
 
 def test_the_node_address_may_be_repeated(model: Model) -> None:
@@ -241,6 +267,11 @@ def test_the_node_address_may_be_repeated(model: Model) -> None:
         ({"device": "e94aycen"}, "'e94aycen' is not among the CANopen devices", "e94aycca"),
         ({"slot": "MXI3"}, "'MXI3' is not among the slots of e94aycca", "'MXI1'"),
         ({"slot": None}, "--slot is missing, as there are several slots of e94aycca", "MXI1, MXI2"),
+        (
+            {"device": "servo931", "slot": "MXI1", "product": None},
+            "there are no slots of servo931",
+            "leave --slot out",
+        ),
         ({"product": "9400"}, "'9400' is not among the products of e94aycca", "9400_StateLine"),
         ({"product": None}, "--product is missing, as there are several products of e94aycca", "9400_StateLine"),
         ({"node": "0"}, "'0' is no node-ID", "1 ... 127"),

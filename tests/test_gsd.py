@@ -1,5 +1,6 @@
 """The GSD files: every fact against the model, by readers of others; masters of others reach data exchange."""
 
+import json
 import re
 import time
 from collections.abc import Iterator
@@ -423,6 +424,38 @@ def test_the_slave_refuses_outputs_of_another_length(cases: list[Case]) -> None:
     station.configure(b"\xf0")
     assert station.exchange(b"\0\0") == b"\xff\xff"
     assert station.exchange(b"\0\0\0") is None
+
+
+# JSON
+
+
+def test_json_holds_the_same_facts(cases: list[Case], generated: Path) -> None:
+    for case in cases:
+        facts = json.loads((generated / "json" / f"{case.device.id}.json").read_text(encoding="utf-8"))["gsd"]
+        assert f"{facts['file']}.{case.path.suffix[1:]}" == case.path.name
+        assert facts["languages"][case.path.suffix[1:]] == case.language
+        words = {
+            k["keyword"]: k["value"][case.language] if isinstance(k["value"], dict) else k["value"]
+            for k in facts["keywords"]
+        }
+        assert words == {keyword.name: case.value(keyword) for keyword in case.gsd.keywords}
+        assert [k["origin"] for k in facts["keywords"]] == [k.source.origin.value for k in case.gsd.keywords]
+        assert {r["bit_rate"]: r["max_tsdr"] for r in facts["bit_rates"]} == {
+            rate.name: rate.max_tsdr for rate in case.gsd.bit_rates
+        }
+        assert bytes(facts["user_parameters"]["bytes"]) == case.gsd.parameters
+        assert [
+            (m["reference"], m["name"][case.language], m["printed"], m["channel_words"], m["words"], m["consistency"])
+            for m in facts["modules"]
+        ] == [
+            (m.reference, case.text(m.name), m.printed, m.channel, m.words, m.consistency.value)
+            for m in case.gsd.modules
+        ]
+        areas = case.gsd.diagnosis.areas if case.gsd.diagnosis else ()
+        assert [
+            (a["first_bit"], a["last_bit"], {int(v): text[case.language] for v, text in a["texts"].items()})
+            for a in facts["diagnosis"]["areas"]
+        ] == [(a.first, a.last, {value: case.text(wording) for value, wording in a.texts}) for a in areas]
 
 
 # Rendering

@@ -25,6 +25,8 @@ _DPV1_PARAMETERS = 3
 """Bytes of user parameters that a slave with DP-V1 takes at least."""
 _BEFORE_TYPE = 7
 """Bytes of the diagnosis in front of the status type: those of every slave, and the length of the block."""
+_LONGEST_RUN = 128
+"""Bytes that one identifier counts."""
 _WIDEST_AREA = 16
 _DIAGNOSIS_HINT = "correct the bits of the area or the values of its texts"
 
@@ -127,6 +129,7 @@ def _lengths(gsd: Gsd) -> Iterator[tuple[str, int, int, Where]]:
     for module in {module.family: module for module in gsd.modules}.values():
         place, where = f"module {module.family}", module.source.where
         yield place, module.length, min(directions), where
+        yield f"{place} words", 2 * module.words, _LONGEST_RUN, where
         yield f"{place} both ways", 2 * module.length, gsd.number("Max_Data_Len"), where
     yield (
         "user parameters",
@@ -175,7 +178,11 @@ def diagnosis(model: Model, device: Device) -> Iterator[Finding]:
     for area in areas:
         width = area.last - area.first + 1
         if not 0 < width <= _WIDEST_AREA:
-            yield _area_finding(device, area, f"{width} bits", f"1 ... {_WIDEST_AREA}", "an area has too many bits")
+            yield _area_finding(
+                device, area, f"{width} bits", f"1 ... {_WIDEST_AREA}", "an area has no or too many bits"
+            )
+        elif len(dict(area.texts)) < len(area.texts):
+            yield _area_finding(device, area, "one value twice", "each value once", "a value has two texts")
         elif wide := [value for value, _ in area.texts if value >= 1 << width]:
             yield _area_finding(
                 device, area, _values(wide), f"{width} bits", "values do not fit the bits of their area"

@@ -164,7 +164,7 @@ def render(model: Model) -> dict[str, Output]:
     for device in model.devices:
         rendered: dict[BusObject, str] = {}
         for dictionary in object_dictionaries(device):
-            name = f"{file_stem(dictionary)}.eds"
+            name = file_name(dictionary)
             if name.lower() in (other.lower() for other in outputs):
                 raise EmitError("name-collision", device.where, f"two EDS files would be called '{name}'")
             outputs[name] = output(text(model, dictionary, name, rendered))
@@ -342,6 +342,11 @@ def file_stem(dictionary: ObjectDictionary) -> str:
     return "_".join(word for part in parts for word in _WORD.findall(_plain(part, dictionary.device.where)))
 
 
+def file_name(dictionary: ObjectDictionary) -> str:
+    """Name of the EDS."""
+    return f"{file_stem(dictionary)}.eds"
+
+
 def caption(dictionary: ObjectDictionary) -> str:
     """What the dictionary describes, in words."""
     device = dictionary.device
@@ -403,8 +408,8 @@ def remarks(model: Model, dictionary: ObjectDictionary) -> list[str]:
     """Where the facts come from, what was assumed, left out and corrected: what every file says of itself."""
     return [
         *_origin(model, dictionary),
-        *_assumed(dictionary),
-        *_left_out(dictionary),
+        *assumed(dictionary),
+        *left_out(dictionary),
         *_errata(dictionary),
         *_sources(dictionary),
     ]
@@ -418,7 +423,8 @@ def _origin(model: Model, dictionary: ObjectDictionary) -> Iterator[str]:
     yield f"This is not a file of {device.manufacturer}; its facts are those of the manual and the standards it names."
 
 
-def _assumed(dictionary: ObjectDictionary) -> Iterator[str]:
+def assumed(dictionary: ObjectDictionary) -> Iterator[str]:
+    """What the file says and the manual does not, a sentence for each reason."""
     if dictionary.product.unknown:
         yield f"Assumed, as the manual gives no figure: 0 as {', '.join(dictionary.product.unknown)}."
     yield f"Assumed, as the manual says nothing: {', '.join(f'{key} {value}' for key, value in _ASSUMED.items())}."
@@ -431,7 +437,8 @@ def _assumed(dictionary: ObjectDictionary) -> Iterator[str]:
         yield f"Assumed, as none is printed and tools need one: default {default} of {', '.join(labels)}."
 
 
-def _left_out(dictionary: ObjectDictionary) -> Iterator[str]:
+def left_out(dictionary: ObjectDictionary) -> Iterator[str]:
+    """What the manual says and the file does not, a sentence for each reason."""
     rates = [str(rate) for rate in dictionary.facts.baud_rates if rate not in _BIT_RATES]
     if rates:
         yield f"Left out, as DeviceInfo has no key for them: bit rates of {', '.join(rates)} kbit/s."
@@ -460,22 +467,27 @@ def _remarked(dictionary: ObjectDictionary, remark: Remark) -> list[tuple[str, E
 
 
 def _errata(dictionary: ObjectDictionary) -> Iterator[str]:
-    """Errata that change a figure, each with the objects that it concerns."""
+    found = corrected(dictionary)
+    if found:
+        yield "Figures that the manual prints otherwise. The reasons, and all other errata, stand in the reference."
+    for erratum, concerned in found:
+        yield f"{concerned}: {erratum.used_text}, printed {printed(erratum)} ({erratum.id})."
+
+
+def corrected(dictionary: ObjectDictionary) -> list[tuple[Erratum, str]]:
+    """Errata that change a figure, each with the designations of the objects that it concerns."""
     concerned: dict[str, list[str]] = {}
     designations = sorted(entry.designation for entry in dictionary.objects)
     for entry in sorted(dictionary.objects, key=lambda entry: entry.designation):
         for name in entry.errata:
             concerned.setdefault(name, []).append(entry.designation)
-    found = [e for e in dictionary.device.errata if e.id in concerned and e.rule and e.kind in _FIGURES]
-    if found:
-        yield "Figures that the manual prints otherwise. The reasons, and all other errata, stand in the reference."
-    for erratum in found:
-        yield f"{_runs(concerned[erratum.id], designations)}: {_correction(erratum)} ({erratum.id})."
+    found = (e for e in dictionary.device.errata if e.id in concerned and e.rule and e.kind in _FIGURES)
+    return [(erratum, _runs(concerned[erratum.id], designations)) for erratum in found]
 
 
-def _correction(erratum: Erratum) -> str:
-    printed = erratum.printed_text or " / ".join(place.printed for place in erratum.places)
-    return f"{erratum.used_text}, printed {printed}"
+def printed(erratum: Erratum) -> str:
+    """What an erratum says is printed, in words or as each place has it."""
+    return erratum.printed_text or " / ".join(place.printed for place in erratum.places)
 
 
 def _runs(some: Sequence[str], all_of: Sequence[str]) -> str:

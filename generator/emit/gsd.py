@@ -129,8 +129,7 @@ def render(model: Model) -> dict[str, Output]:
     """
     outputs: dict[str, Output] = {}
     for device, gsd in ((device, device.gsd) for device in model.devices if device.gsd is not None):
-        for suffix, language in gsd.suffixes:
-            name = f"{gsd.stem}.{suffix}"
+        for name, language in file_names(gsd):
             if name in outputs:
                 raise EmitError("name-collision", gsd.where, f"two GSD files would be called '{name}'")
             outputs[name] = _output(model, device, gsd, name, language)
@@ -138,6 +137,20 @@ def render(model: Model) -> dict[str, Output]:
 
 
 TARGET = Target("gsd", render)
+
+
+def file_names(gsd: Gsd) -> tuple[tuple[str, str], ...]:
+    """Names of the files with the language of each, "en" or "de"."""
+    return tuple((f"{gsd.stem}.{suffix}", language) for suffix, language in gsd.suffixes)
+
+
+def value_text(keyword: Keyword, language: str) -> str:
+    """Value of a keyword as the file writes it."""
+    value = keyword.value
+    if not isinstance(value, Wording):
+        return f"0x{value:04X}" if keyword.name in _HEXADECIMAL else str(value)
+    text = value.text(language)
+    return text if keyword.name in _UNQUOTED else f'"{text}"'
 
 
 def identifiers(module: Module) -> bytes:
@@ -250,15 +263,8 @@ class _File:
         return tuple(self._keyword(self._keywords[name]) for name in names if name in self._keywords)
 
     def _keyword(self, keyword: Keyword) -> Line:
-        value = keyword.value
-        if keyword.name in _UNQUOTED and isinstance(value, Wording):
-            line = self._line(f"{keyword.name}={value.text(self._language)}", keyword.source)
-            return Line((self._origin(keyword.source), *line.comments), line.text, "")
-        if isinstance(value, Wording):
-            shown = f'"{value.text(self._language)}"'
-        else:
-            shown = f"0x{value:04X}" if keyword.name in _HEXADECIMAL else str(value)
-        return self._line(f"{keyword.name}={shown}", keyword.source)
+        line = self._line(f"{keyword.name}={value_text(keyword, self._language)}", keyword.source)
+        return Line((line.mark, *line.comments), line.text, "") if keyword.name in _UNQUOTED else line
 
     def _line(self, text: str, source: Source) -> Line:
         return Line(tuple(self._remarks(source)), text, self._origin(source))

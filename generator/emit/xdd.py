@@ -97,7 +97,7 @@ def render(model: Model) -> dict[str, Output]:
     for device in model.devices:
         rendered: dict[BusObject, Value] = {}
         for dictionary in object_dictionaries(device):
-            name = f"{file_stem(dictionary)}.xdd"
+            name = file_name(dictionary)
             if name.lower() in (other.lower() for other in outputs):
                 raise EmitError("name-collision", device.where, f"two XDD files would be called '{name}'")
             for entry in dictionary.objects:
@@ -108,6 +108,11 @@ def render(model: Model) -> dict[str, Output]:
 
 
 TARGET = Target("xdd", render)
+
+
+def file_name(dictionary: ObjectDictionary) -> str:
+    """Name of the XDD."""
+    return f"{file_stem(dictionary)}.xdd"
 
 
 def _text(model: Model, dictionary: ObjectDictionary, file_name: str, rendered: dict[BusObject, Value]) -> str:
