@@ -9,7 +9,7 @@ RUN := $(VENV)/bin/python
 SOURCES := $(shell find spec generator templates -type f -not -path '*/__pycache__/*' -not -name '.*')
 PIP := $(RUN) -m pip install --quiet --disable-pip-version-check
 
-.PHONY: all check test lint census clean help
+.PHONY: all check test lint fuzz census clean help
 all: .build/generated
 
 .build/generated: $(SOURCES) $(VENV)/ready
@@ -44,6 +44,15 @@ lint: $(VENV)/ready-for-tests ## ruff and mypy --strict over the compiler and th
 	$(VENV)/bin/ruff check generator tests
 	$(VENV)/bin/ruff format --check generator tests
 	$(VENV)/bin/mypy generator tests
+
+fuzz: .build/generated ## fuzz the C codecs, ten seconds each device (clang with libFuzzer, CMake)
+	@for tool in clang cmake; do command -v $$tool >/dev/null || { echo "make fuzz: skipped, $$tool is not on the PATH" >&2; exit 0; }; done; \
+	cmake -S generated/c -B .build/fuzz -DCMAKE_C_COMPILER=clang -DDRIVESPEC_FUZZ=ON -DBUILD_TESTING=OFF >/dev/null && \
+	cmake --build .build/fuzz && \
+	for target in .build/fuzz/*_fuzz; do \
+	    [ -x "$$target" ] || { echo "make fuzz: skipped, clang has no libFuzzer" >&2; exit 0; }; \
+	    "$$target" -max_total_time=10 -max_len=300 || exit 1; \
+	done
 
 clean: ## remove the virtual environment and what builds and tests leave behind
 	rm -rf $(VENV) .build .pytest_cache .mypy_cache .ruff_cache .hypothesis generated/.state.json

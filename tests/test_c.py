@@ -329,6 +329,10 @@ def expected_device(device: Device) -> Values:
         found[f"{name}_ERROR_MASK"] = sum(2**n for run in fields if used & set(run) for n in run)
     for code in device.codes:
         found |= expected_code(code, name)
+    for table in device.tables:
+        if table.kind == "data-type" and table.columns[0].id == "id":
+            entries = [Option(int(row[0]), str(row[1])) for row in table.rows]
+            found |= options(f"{name}_{screaming(table.id)}", entries)
     return found | expected_objects(device, name) | expected_errors(device, name)
 
 
@@ -455,12 +459,17 @@ def test_the_self_test_leaves_no_constant_out(model: Model, c: Path) -> None:
     assert defined("drivespec.h", c) == set(expected_common(model))
 
 
-@pytest.mark.parametrize(("header", "level"), [("", "-O0"), ("", "-O2"), ("_tables", "-O2")])
+@pytest.mark.parametrize(
+    ("header", "level"), [("", "-O0"), ("", "-O2"), ("_tables", "-O2"), ("_telegrams", "-O2"), ("_panel", "-O2")]
+)
 def test_a_header_costs_nothing_until_it_is_used(
     model: Model, c: Path, tmp_path: Path, header: str, level: str
 ) -> None:
     source = tmp_path / "unused.c"
-    source.write_text("".join(f'#include "drivespec/{device.id}{header}.h"\n' for device in model.devices))
+    headers = [f"drivespec/{device.id}{header}.h" for device in model.devices]
+    present = [name for name in headers if (c / "include" / name).exists()]
+    assert len(present) > 1
+    source.write_text("".join(f'#include "{name}"\n' for name in present))
     built = compile_c(tmp_path, source, "cc", "c99", level, f"-I{c / 'include'}", "-c")
     listing = subprocess.run([tool("size"), "-A", str(built)], capture_output=True, text=True, check=True).stdout
     sizes = dict(re.findall(r"^(\.\w+)\S*\s+(\d+)", listing, re.MULTILINE))
@@ -475,7 +484,9 @@ def test_a_header_costs_nothing_until_it_is_used(
 def test_all_headers_together_in_two_files_of_a_program(
     model: Model, c: Path, tmp_path: Path, compiler: str, standard: str
 ) -> None:
-    includes = "".join(f'#include "drivespec/{device.id}_tables.h"\n' for device in model.devices)
+    includes = "".join(
+        f'#include "drivespec/{device.id}_{part}.h"\n' for device in model.devices for part in ("tables", "telegrams")
+    )
     other = tmp_path / "other.c"
     other.write_text(f"{includes}int other(void);\nint other(void) {{ return 0; }}\n")
     source = tmp_path / "both.c"
@@ -513,7 +524,7 @@ def test_names_are_legal_and_stay_apart(model: Model) -> None:
     for path, output in render(model).items():
         if path.endswith(".h"):
             text = output.data().decode("ascii")
-            names += re.findall(r"^#define (\w+)|^ {4}(\w+) = ", text, re.MULTILINE)
+            names += re.findall(r"^#define (\w+)|^ {4}([A-Z]\w+) = ", text, re.MULTILINE)
     flat = [define or enumerator for define, enumerator in names]
     assert [name for name in flat if not re.fullmatch(r"[A-Z][A-Z0-9]*(_[A-Z0-9]+)*", name)] == []
     assert [name for name, count in Counter(name[:SIGNIFICANT].lower() for name in flat).items() if count > 1] == []
@@ -719,6 +730,7 @@ def odd(model: Model) -> Model:
     """The real model with devices that have little, and one that has what is rare."""
     real = model.devices[0]
     bare = replace(real, drive=None, slots=(), canopen=None, codes=(), objects=(), errors=(), errata=())
+    bare = replace(bare, layouts=(), examples=(), switches=(), indicators=(), tables=(), formulas=())
     errors = tuple(replace(error, errata=()) for error in real.errors)
     runs = tuple(replace(error, kind="dpv1", number=n, last=n + 2) for n, error in zip((0, 8), errors, strict=False))
     return replace(
@@ -788,7 +800,8 @@ def test_an_erratum_shows_what_is_printed_and_what_is_used(model: Model, tmp_pat
         where=code.where,
     )
     wrong = replace(model, devices=(replace(device, codes=(replace(code, errata=("invented",)),), errata=(entry,)),))
-    stripped = replace(wrong, devices=(replace(wrong.devices[0], objects=(), errors=()),))
+    bare = replace(wrong.devices[0], objects=(), errors=(), tables=(), switches=(), indicators=())
+    stripped = replace(wrong, devices=(replace(bare, layouts=(), examples=()),))
     text = (write(tmp_path, stripped) / f"include/drivespec/{device.id}.h").read_text(encoding="ascii")
     used = 24575 - code.number
     assert f"Erratum invented: printed (base index): 4711; used: {used} (24575 - code)." in block(

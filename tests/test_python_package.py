@@ -11,11 +11,14 @@ import statistics
 import subprocess
 import sys
 import textwrap
+import timeit
 import zipfile
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import replace
+from decimal import Decimal
 from enum import IntEnum, IntFlag
 from fractions import Fraction
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
@@ -24,6 +27,7 @@ import pytest
 from generator.emit import names
 from generator.emit.base import EmitError
 from generator.emit.python import render
+from generator.emit.python.telegrams import class_name, field_name
 from generator.model import (
     Access,
     Bit,
@@ -31,19 +35,30 @@ from generator.model import (
     Cite,
     Code,
     CodeRef,
+    Column,
     DataType,
     Device,
     DictionaryObject,
     Erratum,
     ErrorEntry,
+    Field,
+    IndicatorRow,
+    IndicatorTable,
+    Layout,
+    Led,
     Model,
     NodeRelative,
     ObjectRef,
     Option,
+    Pattern,
     Range,
     SubCode,
     SubIndex,
+    SwitchGroup,
+    SwitchRow,
+    Table,
 )
+from generator.naming import pascal
 
 PACKAGE = "drivespec_devices"
 VERSIONS = ("3.9", "3.10", "3.11", "3.12", "3.13", "3.14")
@@ -121,7 +136,7 @@ def plain_refs(refs: Any) -> Any:
 
 
 def is_enum(value: Any) -> bool:
-    return isinstance(value, type)
+    return isinstance(value, type) and issubclass(value, (IntEnum, IntFlag))
 
 
 def members(enum: Any) -> Any:
@@ -297,6 +312,14 @@ def test_records_have_every_field_of_the_model(package: Any) -> None:
         (package.CodeRef, CodeRef),
         (package.ObjectRef, ObjectRef),
         (package.NodeRelative, NodeRelative),
+        (package.IndicatorTable, IndicatorTable),
+        (package.IndicatorRow, IndicatorRow),
+        (package.Led, Led),
+        (package.Pattern, Pattern),
+        (package.SwitchGroup, SwitchGroup),
+        (package.SwitchRow, SwitchRow),
+        (package.Table, Table),
+        (package.Column, Column),
     ):
         fields = {enums.get(field.name, field.name) for field in dataclasses.fields(source)}
         left_out = places | (as_printed - set(record.__slots__))
@@ -309,6 +332,12 @@ def test_devices(package: Any, model: Model) -> None:
     assert (package.__version__, package.SPEC_VERSION, package.SPEC_DATE) == (model.version, model.version, model.date)
     with pytest.raises(LookupError, match="no device 'none'"):
         package.load("none")
+
+
+def test_data_types(package: Any) -> None:
+    """Name, number, width and sign of every data type."""
+    assert [plain_type(entry) for entry in package.DATA_TYPES.values()] == [model_type(entry) for entry in DataType]
+    assert all(entry.name == name for name, entry in package.DATA_TYPES.items())
 
 
 def test_codes(pairs: list[tuple[Any, Device]]) -> None:
@@ -381,8 +410,8 @@ def test_device_facts(pairs: list[tuple[Any, Device]]) -> None:
 
 def test_public_names_are_those_of_the_facts(pairs: list[tuple[Any, Device]]) -> None:
     """A constant for each code, object, sub-index and error, the enums that the records name, and nothing else."""
-    always = {"CODES", "DEVICE", "ERRATA", "ERRORS", "OBJECTS", "code", "code_by_name", "codes_at", "error",
-              "errors_at", "object_at"}  # fmt: skip
+    always = {"CODES", "DEVICE", "ERRATA", "ERRORS", "INDICATORS", "OBJECTS", "SWITCHES", "TABLES", "code",
+              "code_by_name", "codes_at", "error", "errors_at", "object_at"}  # fmt: skip
     for module, device in pairs:
         api = set(always)
         constants: dict[str, Any] = {}
@@ -395,10 +424,13 @@ def test_public_names_are_those_of_the_facts(pairs: list[tuple[Any, Device]]) ->
         drive_enums = set()
         if device.drive is not None:
             api |= {"code_index", "index_code"}
+            api |= {"error_number", "error_parts"} if device.drive.error_fields else set()
             constants["INDEX_BASE"] = device.drive.index_base
             lists = {"DriveResponse": device.drive.responses, "DriveModule": device.drive.modules,
                      "DriveCommand": device.drive.commands}  # fmt: skip
             drive_enums = {name for name, entries in lists.items() if entries}
+        telegrams = {name for name, value in telegram_classes(module).items()}
+        drive_enums |= telegram_enums(module, device)
         records = [*module.CODES, *(s for c in module.CODES for s in c.subcodes),
                    *(s for o in module.OBJECTS for s in o.subindexes)]  # fmt: skip
         enums = {getattr(record, key, None) for record in records for key in ("selection_name", "flags_name")} - {None}
@@ -410,11 +442,73 @@ def test_public_names_are_those_of_the_facts(pairs: list[tuple[Any, Device]]) ->
         assert found_enums == enums | drive_enums
         assert {name: value for name, value in values.items() if name in constants} == constants
         assert sorted(errors.values()) == sorted(error.number for error in device.errors)
-        assert set(values) == api | set(constants) | found_enums | set(errors)
+        assert set(values) == api | set(constants) | found_enums | set(errors) | telegrams
         for name, value in errors.items():
             words = [names.error_name(error).upper() for error in device.errors if error.number == value]
             assert any(word in name for word in words)
         assert set(dir(module)) >= set(module.__all__)
+
+
+def telegram_classes(module: Any) -> dict[str, Any]:
+    """Classes of telegrams and of the entries of their groups, by name."""
+    values = {name: getattr(module, name) for name in module.__all__}
+    return {name: value for name, value in values.items() if isinstance(value, type) and not is_enum(value)}
+
+
+def telegram_lists(layout: Layout) -> Iterator[tuple[tuple[str, ...], Field, str, tuple[Option, ...]]]:
+    """Lists of values in a layout: words of the name, the field, the part of it or "", and the list."""
+
+    def walk(fields: tuple[Field, ...], path: tuple[str, ...]) -> Iterator[Any]:
+        for field in fields:
+            yield from walk(field.fields, (*path, field.name))
+            for part, options in (("", field.values), *field.bit_values):
+                if options:
+                    yield (*path, field.name), field, part, options
+
+    yield from walk(layout.fields, (layout.id,))
+
+
+def telegram_enums(module: Any, device: Device) -> set[str]:
+    """Enums of the fields of telegrams, each of which has to list what the layout does."""
+    found = set()
+    for layout in device.layouts:
+        for path, field, part, options in telegram_lists(layout):
+            owner = telegram_classes(module)[pascal(*path[:-1])]
+            doc = next(doc for name, doc in class_docs(owner).items() if name == field.name)
+            names_ = doc.rsplit("Its values are listed in ", 1)[1].rstrip(".").split(", ")
+            lists = [(name, members(getattr(module, name))) for name in names_]
+            (name,) = [name for name, values in lists if values == model_members(options)][:1]
+            assert name.endswith(pascal(part)) and pascal(field.name) in name
+            found.add(name)
+    return found
+
+
+def class_docs(owner: type) -> dict[str, str]:
+    """Documentation of the fields of a class of telegrams."""
+    source = ast.parse(Path(sys.modules[owner.__module__].__file__ or "").read_text(encoding="utf-8"))
+    (body,) = [node.body for node in source.body if isinstance(node, ast.ClassDef) and node.name == owner.__name__]
+    return {
+        node.target.id: " ".join(str(after.value.value).split())
+        for node, after in pairwise(body)
+        if isinstance(node, ast.AnnAssign) and isinstance(node.target, ast.Name)
+        and isinstance(after, ast.Expr) and isinstance(after.value, ast.Constant)
+    }  # fmt: skip
+
+
+def test_telegrams_are_documented(pairs: list[tuple[Any, Device]]) -> None:
+    """Each class says which telegram it is and where it is printed, each field what it is."""
+    for module, device in pairs:
+        for layout in device.layouts:
+            telegram = telegram_classes(module)[class_name(layout)]
+            page = "" if layout.cite.page is None else f" p. {layout.cite.page}"
+            doc = " ".join(telegram.__doc__.split())
+            assert doc.startswith(" ".join(layout.name.split()))
+            assert doc.endswith(f"{layout.cite.manual}, {layout.cite.chapter}{page}.")
+            assert all(erratum in doc for erratum in layout.errata)
+            docs = class_docs(telegram)
+            for field in layout.fields:
+                doc = docs[field_name(field)]
+                assert doc.startswith(" ".join(field.title.split())) and " ".join(field.description.split()) in doc
 
 
 def test_twins_share_their_enums(pairs: list[tuple[Any, Device]]) -> None:
@@ -452,6 +546,9 @@ def test_code_lookups(pairs: list[tuple[Any, Device]]) -> None:
             if device.drive is not None:
                 assert module.code_index(code.number) == code.index
                 assert module.index_code(code.index) == code.number
+                for slot in device.slots:
+                    twin = code.number if code.slot is None else numbers[code.twin_of, slot.name]
+                    assert module.code_index(code.twin_of, slot.name) == device.drive.index_base - twin
         unknown = max((code.number for code in device.codes), default=0) + 1
         with pytest.raises(LookupError, match=f"no code C{unknown:05d}"):
             module.code(unknown)
@@ -461,6 +558,8 @@ def test_code_lookups(pairs: list[tuple[Any, Device]]) -> None:
         with pytest.raises(LookupError, match="no code 'nonsense'"):
             module.code_by_name("nonsense")
         if device.drive is not None:
+            with pytest.raises(LookupError, match="no slot 'X9'"):
+                module.code_index(1, "X9")
             for wrong in (-1, device.drive.index_base + 1):
                 for function in (module.code_index, module.index_code):
                     with pytest.raises(ValueError, match=str(wrong)):
@@ -514,9 +613,236 @@ def test_error_lookups(pairs: list[tuple[Any, Device]]) -> None:
             for error in device.errors:
                 if error.kind == "device":
                     assert module.error(error.number | fields["response"].mask) == module.error(error.number)
+        if "instance" in fields:
+            for error in device.errors:
+                if error.kind == "device":
+                    assert module.error(error.number | fields["instance"].mask) is module.error(error.number)
         free = max((number for _, number in known), default=0) + 1
         with pytest.raises(LookupError, match=f"no device error {free:#x}"):
             module.error(free)
+
+
+def test_error_numbers_come_apart(pairs: list[tuple[Any, Device]]) -> None:
+    """The fields of every error number, each as the model has it, and back."""
+    drives = 0
+    for module, device in pairs:
+        if device.drive is None or not device.drive.error_fields:
+            assert not hasattr(module, "error_parts")
+            continue
+        drives += 1
+        fields = dict(device.drive.error_fields)
+        numbers = [error.number for error in device.errors if error.kind == "device"]
+        for number in (*numbers, 0, 0x447B000F, sum(field.mask for field in fields.values())):
+            parts = module.error_parts(number)
+            assert parts == {name: (number & field.mask) >> field.low for name, field in fields.items()}
+            assert module.error_number(**parts) == number
+        for name, field in fields.items():
+            top = field.mask >> field.low
+            assert module.error_number(**{name: top}) == field.mask
+            with pytest.raises(ValueError, match=str(top + 1)):
+                module.error_number(**{name: top + 1})
+        with pytest.raises(LookupError, match="no field 'nonsense'"):
+            module.error_number(nonsense=1)
+        for wrong in (-1, 1 << 32):
+            with pytest.raises(ValueError, match="is no error number"):
+                module.error_parts(wrong)
+    assert drives
+
+
+def test_values_and_numbers_on_the_bus(pairs: list[tuple[Any, Device]], package: Any) -> None:
+    """Value times scaling within range and type; what lies between two numbers or outside is refused."""
+    scaled = 0
+    for module, device in pairs:
+        for code in device.codes:
+            record, scaling = module.code(code.number), code.scaling or 1
+            if not code.data_type.is_number:
+                for function in (record.to_wire, record.from_wire):
+                    with pytest.raises(ValueError, match="holds no number"):
+                        function(1)
+                continue
+            lowest, highest = code.data_type.lowest, code.data_type.highest
+            limits = code.range or Range(Fraction(lowest, scaling), Fraction(highest, scaling))
+            for bound, step in ((limits.low, -1), (limits.high, 1)):
+                wire = bound * scaling
+                inside = code.data_type.lowest <= wire <= code.data_type.highest and wire.denominator == 1
+                if inside:
+                    assert record.to_wire(bound) == wire
+                    assert record.from_wire(record.to_wire(bound)) == bound
+                with pytest.raises(ValueError, match=r"outside|not fit"):
+                    record.to_wire(bound + step)
+            for raw in (code.data_type.lowest - 1, code.data_type.highest + 1):
+                with pytest.raises(ValueError, match="does not fit"):
+                    record.from_wire(raw)
+            if limits.low == limits.high:
+                continue
+            for factor in (factor for factor in (1, 10, 1000) if factor <= highest):
+                finer = replace(record, scaling=factor, range=None)
+                assert finer.from_wire(factor) == 1 and finer.from_wire(1) == Fraction(1, factor)
+                for raw in (code.data_type.highest, code.data_type.highest // 3, 102):
+                    value = finer.from_wire(min(raw, code.data_type.highest))
+                    assert finer.to_wire(value) == min(raw, code.data_type.highest)
+                    assert finer.to_wire(Decimal(value.numerator) / value.denominator) == finer.to_wire(value)
+                for between in (Fraction(1, 2 * factor), 0.5 / factor):
+                    with pytest.raises(ValueError, match=f"no multiple of 1/{factor}"):
+                        finer.to_wire(between)
+                scaled += 1
+            assert replace(record, scaling=10, range=None).to_wire(10.2) == 102
+            for nothing in (float("nan"), float("inf"), "x"):
+                with pytest.raises(ValueError, match=r"nan|inf|'x'"):
+                    record.to_wire(nothing)
+    for wrong in (0, 128):
+        with pytest.raises(ValueError, match="no node address"):
+            package.NodeRelative(0x180).at(wrong)
+    assert [package.NodeRelative(0x180).at(node) for node in (1, 127)] == [0x181, 0x1FF]
+    assert scaled
+
+
+def test_switches(pairs: list[tuple[Any, Device]]) -> None:
+    """Every fact of every group; every row and every sum of weights there and back; nothing else is accepted."""
+    for module, device in pairs:
+        assert list(module.SWITCHES) == [group.id for group in device.switches]
+        for group in device.switches:
+            record = module.SWITCHES[group.id]
+            names_ = ("id", "name", "labels", "weights", "valid", "unit", "notes", "errata")
+            assert [getattr(record, n) for n in names_] == [getattr(group, n) for n in names_]
+            assert (plain_cite(record.cite), record.origin) == (plain_cite(group.cite), group.origin.value)
+            assert plain_refs(record.sets) == plain_refs(group.sets)
+            assert [(str(row.value), row.positions) for row in record.rows] == [
+                (r.value, r.positions) for r in group.rows
+            ]
+            printed = {row.positions: row.value for row in record.rows}
+            for place in range(1 << len(group.labels)):
+                positions = f"{place:0{len(group.labels)}b}"
+                rows = [v for p, v in printed.items() if all(a in ("x", b) for a, b in zip(p, positions, strict=True))]
+                total = group.sum(positions) if group.weights else 0
+                valid = group.valid is not None and group.valid[0] <= total <= group.valid[1]
+                if rows or valid:
+                    value = record.value(positions)
+                    assert value == (rows[0] if rows else total)
+                    back = record.positions(value)
+                    assert all(a in ("x", b) for a, b in zip(back, positions, strict=True)) or len(rows) > 1
+                else:
+                    with pytest.raises(LookupError, match="set nothing valid"):
+                        record.value(positions)
+            for wrong in ("", "2" * len(group.labels), "0" * (len(group.labels) + 1)):
+                with pytest.raises(ValueError, match="are not the positions"):
+                    record.value(wrong)
+            for nothing in (-1, 10**6, "nonsense"):
+                with pytest.raises(LookupError, match="no positions"):
+                    record.positions(nothing)
+
+
+def test_switches_by_their_weights(pairs: list[tuple[Any, Device]]) -> None:
+    """Where no row is printed the weights alone decide, from the first valid value to the last."""
+    sums = 0
+    for module, device in pairs:
+        for group in (group for group in device.switches if group.weights and group.valid):
+            assert group.valid is not None
+            record = replace(module.SWITCHES[group.id], rows=())
+            for place in range(1 << len(group.labels)):
+                positions = f"{place:0{len(group.labels)}b}"
+                total = group.sum(positions)
+                if group.valid[0] <= total <= group.valid[1]:
+                    assert record.value(positions) == total and record.positions(total) == positions
+                    sums += 1
+                else:
+                    with pytest.raises(LookupError, match="set nothing valid"):
+                        record.value(positions)
+                    with pytest.raises(LookupError, match="no positions"):
+                        record.positions(total)
+    assert sums
+
+
+def test_patterns_fit_where_both_say_the_same(package: Any) -> None:
+    """What one of two patterns leaves out may be anything; what both say has to be equal."""
+    of = package.Pattern.of
+    alike = [("flash 2", "flash 2, 1 s off"), ("blink", "blink 0.2 s"), ("on", "on green"), ("any", "flash 3")]
+    unlike = [("flash 2", "flash 3, 1 s off"), ("blink 1 s", "blink 0.2 s"), ("on red", "on green"), ("on", "off")]
+    for pairs_, expected in ((alike, True), (unlike, False)):
+        for first, second in pairs_:
+            assert of(first).fits(of(second)) is of(second).fits(of(first)) is expected
+
+
+def test_indicators(pairs: list[tuple[Any, Device]], package: Any) -> None:
+    """Every fact of every table of LEDs; what a row shows leads to the rows that an observer could mean."""
+    for module, device in pairs:
+        assert list(module.INDICATORS) == [table.id for table in device.indicators]
+        for table in device.indicators:
+            record = module.INDICATORS[table.id]
+            assert (record.id, record.name, record.errata) == (table.id, table.name, table.errata)
+            assert plain_cite(record.cite) == plain_cite(table.cite)
+            assert [(x.label, x.colour, x.name) for x in record.leds] == [
+                (x.label, x.colour, x.name) for x in table.leds
+            ]
+            assert [row_facts(row) for row in record.rows] == [
+                [*row_facts(row)[:-2], row.origin.value, plain_cite(row.cite)] for row in table.rows
+            ]
+            for row in record.rows:
+                seen = {led.label: pattern for led, pattern in zip(record.leds, row.patterns, strict=True)}
+                texts = {label: str(pattern) for label, pattern in seen.items()}
+                for pattern in row.patterns:
+                    assert package.Pattern.of(str(pattern)) == pattern
+                assert row in record.states(seen) and record.states(seen) == record.states(texts)
+                alike = [other for other in record.rows if all(map(package.Pattern.fits, other.patterns, row.patterns))]
+                assert list(record.states(seen)) == alike
+            assert record.states({}) == record.rows
+            assert record.states({led.label: "flash 9" for led in record.leds}) == ()
+            with pytest.raises(LookupError, match="no LED 'nonsense'"):
+                record.states({"nonsense": "on"})
+            for wrong in ("", "glow", "on 3", "flash 1.5", "blink 1 2", "blink red green"):
+                with pytest.raises(ValueError, match=r"no pattern|invalid literal|Invalid literal"):
+                    record.states({record.leds[0].label: wrong})
+
+
+def row_facts(row: Any) -> list[Any]:
+    """Facts of a row of an LED table."""
+    patterns = [
+        (getattr(p.light, "value", p.light), p.colour, p.period, p.flashes, p.pause) for p in row.patterns
+    ]  # fmt: skip
+    return [patterns, row.state, row.meaning, row.origin, plain_cite(row.cite)]
+
+
+def test_tables(pairs: list[tuple[Any, Device]]) -> None:
+    """Every cell of every printed table, by its place, its column and its row."""
+    for module, device in pairs:
+        assert list(module.TABLES) == [table.id for table in device.tables]
+        for table in device.tables:
+            record = module.TABLES[table.id]
+            names_ = ("id", "kind", "name", "rows", "notes", "errata")
+            assert [getattr(record, n) for n in names_] == [getattr(table, n) for n in names_]
+            assert (plain_cite(record.cite), record.origin) == (plain_cite(table.cite), table.origin.value)
+            assert [(c.id, c.name, c.unit) for c in record.columns] == [(c.id, c.name, c.unit) for c in table.columns]
+            ids = [column.id for column in table.columns]
+            for place, column in enumerate(ids):
+                assert record.column(column) == tuple(row[place] for row in table.rows)
+                for row in table.rows:
+                    assert dict(zip(ids, row, strict=True)) in record.find(column, row[place])
+                    assert all(found[column] == row[place] for found in record.find(column, row[place]))
+            with pytest.raises(LookupError, match="no column 'nonsense'"):
+                record.column("nonsense")
+
+
+def best_time(action: Callable[[], object], count: int = 20000) -> float:
+    """Seconds for one call, best of several runs."""
+    return min(timeit.repeat(action, number=count, repeat=7)) / count
+
+
+def test_lookup_speed(pairs: list[tuple[Any, Device]]) -> None:
+    """A look-up that was done before costs no more than three times a function around a dict."""
+    module, device = pairs[0]
+    number = next(error.number for error in device.errors if error.count > 1) + 1
+    error, code = module.error, module.code
+    plain = {number: error(number)}
+    code(device.codes[0].number)
+
+    def alternative() -> Any:
+        return around(number)
+
+    def around(key: int) -> Any:
+        return plain[key]
+
+    assert best_time(lambda: error(number)) < 3 * best_time(alternative)
+    assert best_time(lambda: code(device.codes[0].number)) < 4 * best_time(alternative)
 
 
 def test_raw_values_survive(pairs: list[tuple[Any, Device]]) -> None:
@@ -567,6 +893,8 @@ def stub_docs(distribution: Path, device: Device) -> dict[str, str]:
         if isinstance(statement, ast.AnnAssign) and isinstance(statement.target, ast.Name):
             assert isinstance(after, ast.Expr) and isinstance(after.value, ast.Constant)
             docs[statement.target.id] = " ".join(str(after.value.value).split())
+        elif isinstance(statement, ast.ImportFrom) and (statement.module or "").endswith("_telegrams"):
+            docs |= dict.fromkeys((alias.asname or "" for alias in statement.names), "documented in its own module")
         elif isinstance(statement, (ast.ClassDef, ast.FunctionDef)):
             docs[statement.name] = " ".join((ast.get_docstring(statement) or "").split())
     return docs
@@ -712,8 +1040,8 @@ def smoke(device: Device) -> str:
             assert pickle.loads(pickle.dumps(value)) == value == copy.deepcopy(value)
             assert hash(copy.copy(value)) == hash(value)
         for enum in values:
-            if isinstance(enum, type):
-                for member in enum:
+            if isinstance(enum, type) and not hasattr(enum, "decode"):
+                for member in getattr(enum, "__members__", {{}}).values():
                     assert pickle.loads(pickle.dumps(member)) is member
         print(len(values), len(d.CODES), len(d.OBJECTS), len(d.ERRORS), len({PACKAGE}.__all__))
     """
@@ -772,6 +1100,23 @@ def test_installed_wheel_works(wheel: Path, distribution: Path, model: Model, tm
         assert script(path=place, code=smoke(device), flags=("-S",)) == expected
         where = script(path=place, code=f"import {PACKAGE}\nprint({PACKAGE}.__file__)", flags=("-S",))
         assert where.startswith(str(place))
+
+
+def test_consumer(wheel: Path, root: Path, tmp_path: Path) -> None:
+    """A program of somebody else: installed, checked by mypy and run, it says what it has to."""
+    pip = (sys.executable, "-m", "pip", "--disable-pip-version-check", "install", "--quiet")
+    done = run(*pip, "--no-deps", "--no-index", "--target", tmp_path / "site", wheel)
+    assert done.returncode == 0, done.stdout + done.stderr
+    folder = shutil.copytree(root / "tests" / "consumers" / "python", tmp_path / "consumer")
+    mypy = (sys.executable, "-m", "mypy", "--strict", "--cache-dir", tmp_path / "cache", "busmonitor")
+    done = run(*mypy, cwd=folder, path=tmp_path / "site")
+    assert done.returncode == 0, done.stdout + done.stderr
+    program = [sys.executable, "-W", "error", "-S", "busmonitor"]
+    with (folder / "log.txt").open(encoding="utf-8") as log:
+        environment = {"PYTHONPATH": str(tmp_path / "site"), "PYTHONIOENCODING": "utf-8"}
+        said = subprocess.run(program, cwd=folder, stdin=log, capture_output=True, encoding="utf-8", env=environment)
+    assert said.returncode == 0, said.stderr
+    assert said.stdout == (folder / "expected.txt").read_text(encoding="utf-8")
 
 
 # Cost.

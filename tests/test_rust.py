@@ -1,11 +1,8 @@
 """The Rust crate: built, linted, documented and run by cargo, and compared with the model fact by fact."""
 
 import json
-import os
 import re
-import shutil
-import subprocess
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from fractions import Fraction
 from itertools import count
@@ -13,15 +10,17 @@ from math import ceil, floor
 from pathlib import Path
 
 import pytest
+from rust_crate import Cargo, edge_indicators, edge_layouts, edge_switches, edge_tables, manifest, texts
 
 from generator.emit import names
-from generator.emit.base import EmitError, Output
+from generator.emit.base import EmitError
 from generator.emit.rust import TARGET
 from generator.emit.rust.syntax import doc
 from generator.model import (
     Access,
     Bit,
     BitField,
+    Cite,
     Code,
     CodeRef,
     DataType,
@@ -30,71 +29,22 @@ from generator.model import (
     DictionaryObject,
     Drive,
     ErrorEntry,
+    IndicatorRow,
+    IndicatorTable,
     Model,
     NodeRelative,
     Option,
     Range,
     SubCode,
     SubIndex,
+    SwitchGroup,
 )
 
-WORKER = os.environ.get("PYTEST_XDIST_WORKER", "main")
 REPORTED = ("response", "instance")
 HOSTILE = (
     "Text [with] <markup> *and* `ticks`, _edges_, ~~strokes~~ and a\\backslash | - 5 + 3 # 1. 2) "
     'https://example.org/a_b longer than one line of the comment, to be wrapped between "words" - or at a dash'
 )
-
-
-class Cargo:
-    """Runs cargo on copies of crates below .build, so that what was generated stays untouched."""
-
-    def __init__(self, root: Path) -> None:
-        self._folder = root / ".build" / "rust" / WORKER
-        self._environment = os.environ | {
-            "CARGO_TARGET_DIR": str(root / ".build" / "cargo" / WORKER),
-            "CARGO_TERM_COLOR": "never",
-            "RUSTDOCFLAGS": "-D warnings",
-        }
-
-    def place(self, name: str, files: Mapping[str, str]) -> Path:
-        """A folder that holds exactly these files; an unchanged file keeps its time, so that cargo keeps its work."""
-        folder = self._folder / name
-        for path, text in files.items():
-            file = folder / path
-            file.parent.mkdir(parents=True, exist_ok=True)
-            if not file.exists() or file.read_text(encoding="utf-8") != text:
-                file.write_text(text, encoding="utf-8")
-        for file in [file for file in folder.rglob("*") if file.is_file()]:
-            if str(file.relative_to(folder)) not in files:
-                file.unlink()
-        return folder
-
-    def run(self, folder: Path, *arguments: str) -> subprocess.CompletedProcess[str]:
-        """Cargo without network."""
-        cargo = shutil.which("cargo")
-        if cargo is None:
-            pytest.fail(
-                "'cargo' was not found: the tests of the Rust target need Rust 1.65 or newer (https://rustup.rs)"
-            )
-        return subprocess.run(
-            [cargo, *arguments], cwd=folder, env=self._environment, capture_output=True, text=True, check=False
-        )
-
-    def succeed(self, folder: Path, *arguments: str) -> str:
-        """Standard output of cargo, which has to succeed."""
-        done = self.run(folder, *arguments)
-        assert done.returncode == 0, done.stderr + done.stdout
-        return done.stdout
-
-    def component(self, folder: Path, name: str) -> None:
-        """Skip the test where a component of the toolchain is not installed."""
-        if self.run(folder, name, "--version").returncode != 0:
-            pytest.skip(f"cargo {name} is not installed")
-
-
-def texts(files: Mapping[str, Output]) -> dict[str, str]:
-    return {path: output.text for path, output in files.items()}
 
 
 @pytest.fixture(scope="module")
@@ -172,6 +122,10 @@ def device_facts(device: Device) -> Iterator[str]:
         for error in sorted(device.errors, key=lambda error: error.number):
             if error.kind == kind:
                 yield from error_facts(f"{path}/error/{kind}/{error.number}", error)
+    for table in device.indicators:
+        yield from indicator_facts(f"{path}/indicator/{table.id}", table)
+    for group in device.switches:
+        yield from switch_facts(f"{path}/switch/{group.id}", group)
     for erratum in sorted(device.errata, key=lambda erratum: erratum.id):
         where = f"{path}/erratum/{erratum.id}"
         yield from entry(where, kind=erratum.kind)
@@ -193,6 +147,37 @@ def drive_facts(path: str, drive: Drive) -> Iterator[str]:
             yield from entry(f"{path}/{word}", **{str(value.value): value.name})
 
 
+def indicator_facts(path: str, table: IndicatorTable) -> Iterator[str]:
+    yield from entry(path, name=table.name)
+    for position, led in enumerate(table.leds):
+        yield from entry(f"{path}/led/{position}", label=led.label, colour=led.colour, name=led.name)
+    for position, row in enumerate(table.rows):
+        where = f"{path}/row/{position}"
+        for number, pattern in enumerate(row.patterns):
+            times = [None if time is None else int(time * 1000) for time in (pattern.period, pattern.pause)]
+            yield from entry(f"{where}/pattern/{number}", light=pattern.light.value, colour=pattern.colour)
+            yield from entry(f"{where}/pattern/{number}", period=times[0], flashes=pattern.flashes, pause=times[1])
+        yield from entry(where, state=row.state, meaning=row.meaning)
+        yield from source_facts(where, row, ())
+    yield from cite_facts(path, table.cite)
+    yield from listed(f"{path}/erratum", table.errata)
+
+
+def switch_facts(path: str, group: SwitchGroup) -> Iterator[str]:
+    yield from entry(path, name=group.name)
+    yield from listed(f"{path}/label", group.labels)
+    yield from listed(f"{path}/weight", group.weights)
+    yield from listed(f"{path}/valid", group.valid or ())
+    yield from entry(path, unit=group.unit)
+    yield from listed(f"{path}/sets", group.sets)
+    for position, row in enumerate(group.rows):
+        number = int(row.value) if row.value.isdecimal() else None
+        on, either = (int("".join("01"[p == of] for p in reversed(row.positions)), 2) for of in "1x")
+        yield from entry(f"{path}/row/{position}", value=row.value, number=number, on=on, either=either)
+    yield from listed(f"{path}/note", group.notes)
+    yield from source_facts(path, group, group.errata)
+
+
 def code_facts(path: str, code: Code) -> Iterator[str]:
     yield from entry(path, slot=code.slot, twin_of=code.twin_of, name=code.name, index=code.index)
     yield from entry(path, type_name=code.type_name, data_type=code.data_type.canopen_name, length=code.length)
@@ -210,7 +195,7 @@ def code_facts(path: str, code: Code) -> Iterator[str]:
         yield from option_facts(where, sub.options)
     yield from listed(f"{path}/object", code.objects)
     yield from entry(path, since=code.since, internal=code.internal, shared_by=code.shared_by)
-    yield from source_facts(path, code)
+    yield from source_facts(path, code, code.errata)
 
 
 def object_facts(path: str, item: DictionaryObject) -> Iterator[str]:
@@ -227,7 +212,7 @@ def object_facts(path: str, item: DictionaryObject) -> Iterator[str]:
         yield from entry(where, signature=sub.signature, pdo_mapping=sub.pdo_mapping, unused=sub.unused)
         yield from entry(where, abort=sub.abort)
         yield from listed(f"{where}/erratum", sub.errata)
-    yield from source_facts(path, item)
+    yield from source_facts(path, item, item.errata)
 
 
 def error_facts(path: str, error: ErrorEntry) -> Iterator[str]:
@@ -237,13 +222,21 @@ def error_facts(path: str, error: ErrorEntry) -> Iterator[str]:
     yield from entry(path, register=error.register)
     yield from listed(f"{path}/cause", error.causes)
     yield from listed(f"{path}/remedy", error.remedies)
-    yield from source_facts(path, error)
+    yield from source_facts(path, error, error.errata)
 
 
-def source_facts(path: str, fact: Code | DictionaryObject | ErrorEntry) -> Iterator[str]:
+def source_facts(
+    path: str,
+    fact: Code | DictionaryObject | ErrorEntry | IndicatorRow | SwitchGroup,
+    errata: Sequence[str],
+) -> Iterator[str]:
     yield from entry(path, origin=fact.origin.value)
-    yield from entry(f"{path}/cite", manual=fact.cite.manual, chapter=fact.cite.chapter, page=fact.cite.page)
-    yield from listed(f"{path}/erratum", fact.errata)
+    yield from cite_facts(path, fact.cite)
+    yield from listed(f"{path}/erratum", errata)
+
+
+def cite_facts(path: str, cite: Cite) -> Iterator[str]:
+    yield from entry(f"{path}/cite", manual=cite.manual, chapter=cite.chapter, page=cite.page)
 
 
 def range_facts(path: str, value: Range | None, factor: int) -> Iterator[str]:
@@ -321,7 +314,7 @@ def test_formatted_as_rustfmt_does(cargo: Cargo, crate: Path) -> None:
 
 
 def test_example_of_the_readme(cargo: Cargo, crate: Path) -> None:
-    printed = cargo.succeed(crate, "test", "--offline")
+    printed = cargo.succeed(crate, "test", "--offline", "--doc")
     assert "test src/lib.rs" in printed
     assert "test result: ok. 1 passed" in printed
 
@@ -332,11 +325,27 @@ def test_every_fact(cargo: Cargo, crate: Path, model: Model) -> None:
 
 def test_names_and_lookups(cargo: Cargo, crate: Path, model: Model) -> None:
     expected = dict(probes(model))
-    lines = "\n".join(f'    println!("{{}}\\t{{:?}}", r#"{probe}"#, {probe});' for probe in expected)
-    program = f"use drivespec_devices::*;\n\nfn main() {{\n{lines}\n}}\n"
-    folder = cargo.place("probe", {"Cargo.toml": manifest("probe", crate), "src/main.rs": program})
-    printed = cargo.succeed(folder, "run", "--offline", "--quiet")
-    assert dict(line.split("\t", 1) for line in printed.splitlines()) == expected
+    assert cargo.probe("probe", crate, ["*"], list(expected)) == expected
+
+
+def test_package(cargo: Cargo, crate: Path, files: dict[str, str]) -> None:
+    """What is published holds every file, and builds."""
+    packed = cargo.succeed(crate, "package", "--offline", "--allow-dirty", "--list").splitlines()
+    assert set(files) <= set(packed)
+    cargo.succeed(crate, "package", "--offline", "--allow-dirty")
+
+
+def test_consumer(cargo: Cargo, crate: Path, root: Path) -> None:
+    """A program that knows the crate from its documentation alone."""
+    home = root / "tests" / "consumers" / "rust"
+    program = {path: (home / path).read_text(encoding="utf-8") for path in ("Cargo.toml", "src/main.rs")}
+    assert '"../../../generated/rust"' in program["Cargo.toml"]
+    program["Cargo.toml"] = program["Cargo.toml"].replace("../../../generated/rust", crate.as_posix())
+    folder = cargo.place("busmonitor", program)
+    printed = cargo.feed(folder, (home / "log.txt").read_text(encoding="utf-8"))
+    assert printed == (home / "expected.txt").read_text(encoding="utf-8")
+    cargo.component(folder, "clippy")
+    cargo.succeed(folder, "clippy", "--offline", "--", "-D", "warnings")
 
 
 def test_works_without_std(cargo: Cargo, crate: Path) -> None:
@@ -353,13 +362,6 @@ def test_works_without_std(cargo: Cargo, crate: Path) -> None:
     hosted = manifest("hosted", crate, '"std"') + settings
     done = cargo.run(cargo.place("hosted", {"Cargo.toml": hosted, "src/lib.rs": program}), "build", "--offline")
     assert "panic_impl" in done.stderr
-
-
-def manifest(name: str, crate: Path, features: str = "") -> str:
-    return (
-        f'[package]\nname = "{name}"\nversion = "0.0.0"\nedition = "2021"\n\n[workspace]\n\n'
-        f'[dependencies]\ndrivespec-devices = {{ path = "{crate.as_posix()}", features = [{features}] }}\n'
-    )
 
 
 def probes(model: Model) -> Iterator[tuple[str, str]]:
@@ -574,6 +576,11 @@ def edge_model(model: Model) -> Model:
         codes=(),
         objects=(),
         errors=(),
+        indicators=(),
+        switches=(),
+        tables=(),
+        layouts=(),
+        examples=(),
         errata=(),
     )
     reserved = replace(
@@ -583,6 +590,10 @@ def edge_model(model: Model) -> Model:
         codes=edge_codes(device.codes[0]),
         objects=edge_objects(device.objects[0]),
         errors=edge_errors(device.errors[0]),
+        indicators=edge_indicators(device.indicators[0]),
+        switches=edge_switches(device.switches[0]),
+        tables=edge_tables(device.tables[0]),
+        layouts=edge_layouts(device.layouts[0]),
     )
     alone = replace(
         bare, id="alone", codes=reserved.codes[:1], objects=reserved.objects[:1], errors=reserved.errors[:1]

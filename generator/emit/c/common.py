@@ -1,8 +1,10 @@
 """drivespec.h: what all devices share, the base drives and the predefined connection set."""
 
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 
 from generator.emit.c.prose import cited, provenance
+from generator.emit.c.syntax import comment, integer
 from generator.emit.c.writer import ACCESS_FLAGS, Header, Names, Section, Writer
 from generator.emit.names import field_names
 from generator.model import DataType, Drive, DriveCommand, DriveModule, Manual, Model, Option, Response, Where
@@ -21,7 +23,58 @@ _HERE = Where("drivespec.h", 1, 1)
 """Place of the constants that are not of spec."""
 
 
-def common_header(model: Model, names: Names) -> Header:
+_FUNCTIONS = (
+    "field_get",
+    "field_set",
+    "at_node",
+    "type_limits",
+    "in_range",
+    "to_wire",
+    "from_wire",
+    "same_text",
+    "find_code",
+    "find_name",
+    "find_default",
+)
+"""Ends of the names of the functions that the template holds."""
+
+
+@dataclass(frozen=True, slots=True)
+class ErrorField:
+    """Function that takes a field out of an error number; ``prefix`` begins the names of its mask and shift."""
+
+    function: str
+    prefix: str
+    comment: str
+
+
+@dataclass(frozen=True, slots=True)
+class DriveView:
+    """Functions of a base drive; ``stem`` and ``prefix`` begin the names."""
+
+    stem: str
+    prefix: str
+    fields: tuple[ErrorField, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class TypeView:
+    """A data type of numbers and its limits."""
+
+    name: str
+    min: str
+    max: str
+
+
+@dataclass(frozen=True, slots=True)
+class CommonHeader(Header):
+    """View of drivespec.h: the constants and what its functions take from the model."""
+
+    drives: tuple[DriveView, ...]
+    types: tuple[TypeView, ...]
+
+
+def common_header(model: Model, names: Names) -> CommonHeader:
     """View of drivespec.h."""
     guard = names.claim("DRIVESPEC_DRIVESPEC_H", _HERE)
     sections = [*_interface(names)]
@@ -30,7 +83,34 @@ def common_header(model: Model, names: Names) -> Header:
         sections.append(_connection_set(model, names))
     makers = sorted({drive.manufacturer for drive in model.drives})
     notes = provenance(model, _manuals(model), makers)
-    return Header("drivespec.h", guard, "Types and facts that several drives share.", notes, tuple(sections))
+    for function in _FUNCTIONS:
+        names.claim(f"drivespec_{function}", _HERE)
+    drives = tuple(_drive_view(drive, names) for drive in model.drives)
+    types = tuple(_type_view(data_type) for data_type in DataType if data_type.is_number)
+    brief = "Types and facts that several drives share."
+    return CommonHeader("drivespec.h", guard, brief, notes, tuple(sections), drives, types)
+
+
+def _drive_view(drive: Drive, names: Names) -> DriveView:
+    prefix, stem = drive_prefix(drive), drive_prefix(drive).lower()
+    names.claim(f"{stem}_index", drive.where)
+    names.claim(f"{stem}_code", drive.where)
+    bit_fields = [field for _, field in drive.error_fields]
+    fields = tuple(
+        ErrorField(
+            names.claim(f"{stem}_error_{name}", drive.where),
+            f"{prefix}_ERROR_{name.upper()}",
+            comment(f"{field.label} of an error number."),
+        )
+        for field, name in zip(bit_fields, field_names(bit_fields), strict=True)
+    )
+    return DriveView(stem, prefix, fields)
+
+
+def _type_view(data_type: DataType) -> TypeView:
+    highest = min(data_type.highest, (1 << 63) - 1)
+    low, high = (integer(value, 64, signed=True) for value in (data_type.lowest, highest))
+    return TypeView(f"DRIVESPEC_TYPE_{data_type.canopen_name}", low, high)
 
 
 def drive_prefix(drive: Drive) -> str:

@@ -7,7 +7,20 @@ from generator.emit.c.prose import cited, errata, listed, provenance, references
 from generator.emit.c.syntax import comment
 from generator.emit.c.writer import Header, Names, Section, Writer
 from generator.emit.names import code_name, error_name, object_name
-from generator.model import Code, Default, Device, DictionaryObject, ErrorEntry, Model, NodeRelative, SubCode, SubIndex
+from generator.model import (
+    Code,
+    DataType,
+    Default,
+    Device,
+    DictionaryObject,
+    ErrorEntry,
+    Model,
+    NodeRelative,
+    Option,
+    SubCode,
+    SubIndex,
+    Table,
+)
 from generator.naming import screaming
 
 _OBJECT_ACCESS = {
@@ -29,6 +42,7 @@ def device_header(model: Model, device: Device, names: Names) -> Header:
     sections = [_device(device, prefix, names)]
     sections += [_code(code, device, prefix, names) for code in device.codes]
     sections += [_object(entry, device, prefix, names) for entry in device.objects]
+    sections += [_identifiers(table, device, prefix, names) for table in device.tables if identified(table)]
     widths = error_widths(device)
     sections += [_error(error, device, prefix, widths[error.kind], names) for error in device.errors]
     return Header(
@@ -38,6 +52,20 @@ def device_header(model: Model, device: Device, names: Names) -> Header:
         provenance(model, [device.manual], [device.manufacturer]),
         tuple(sections),
     )
+
+
+def identified(table: Table) -> list[Option]:
+    """Rows of a table of data types as a selection: the numbers of its column "id" and the names beside them."""
+    if table.kind != "data-type" or [column.id for column in table.columns[:1]] != ["id"]:
+        return []
+    return [Option(row[0], str(row[1])) for row in table.rows if isinstance(row[0], int)]
+
+
+def _identifiers(table: Table, device: Device, prefix: str, names: Names) -> Section:
+    writer = Writer(names, prefix, table.name, table.where)
+    writer.options(screaming(table.id), identified(table), DataType.UNSIGNED32)
+    lines = [*table.notes, cited(table.cite, table.origin), *errata(device, table.errata, {})]
+    return writer.section(table.name, lines)
 
 
 def device_prefix(device: Device) -> str:

@@ -1,13 +1,59 @@
 """<device>_tables.h: the records of one device, and the numbers that its self-test prints of them."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
-from generator.emit.c.common import ERROR_KINDS, NO_RESPONSE
+from generator.emit.c.common import ERROR_KINDS, NO_RESPONSE, drive_prefix
 from generator.emit.c.device import DefaultRun, access_flags, code_defaults, device_prefix, error_mask
+from generator.emit.c.hashing import GOLDEN, mixed_kind, perfect_hash
 from generator.emit.c.prose import provenance
 from generator.emit.c.syntax import comment, integer, string
 from generator.emit.c.writer import Names, access, wire_limits
-from generator.model import Code, Device, ErrorEntry, Model, NodeRelative
+from generator.model import Code, Device, ErrorEntry, Model, NodeRelative, Slot
+from generator.naming import snake
+
+_NAMES = (
+    "codes",
+    "defaults",
+    "errors",
+    "error_seeds",
+    "error_places",
+    "error_runs",
+    "baud_rates",
+    "find_code",
+    "find_code_by_index",
+    "find_code_by_name",
+    "find_default",
+    "find_error",
+    "find_reported_error",
+)
+"""Ends of the names of a device's tables and lookups."""
+
+_BYTE = 256
+"""Records that a byte tells apart."""
+
+
+@dataclass(frozen=True, slots=True)
+class ErrorHash:
+    """Perfect hash of the single error numbers; ``places`` leads to their records."""
+
+    kind_factor: str
+    bucket_factor: str
+    bucket_shift: str
+    seeds: str
+    slot_factor: str
+    slot_shift: str
+    place_type: str
+    places: str
+
+
+@dataclass(frozen=True, slots=True)
+class SlotView:
+    """A module slot: its name as the manual has it, the function for its codes, and how its constants begin."""
+
+    name: str
+    function: str
+    prefix: str
 
 
 @dataclass(frozen=True, slots=True)
@@ -25,14 +71,19 @@ class Tables:
     codes: tuple[str, ...]
     defaults: tuple[str, ...]
     errors: tuple[str, ...]
+    error_hash: ErrorHash | None
+    error_runs: str
+    index_base: str
+    slots: tuple[SlotView, ...]
     baud_rates: str
 
 
 def device_tables(model: Model, device: Device, names: Names) -> Tables:
     """View of the tables of a device."""
     prefix, stem = device_prefix(device), device_prefix(device).lower()
-    for name in ("codes", "defaults", "errors", "baud_rates", "find_code", "find_default", "find_error"):
+    for name in _NAMES:
         names.claim(f"{stem}_{name}", device.where)
+    errors = sorted_errors(device)
     return Tables(
         file=f"{device.id}_tables.h",
         guard=names.claim(f"DRIVESPEC_{prefix}_TABLES_H", device.where),
@@ -44,8 +95,35 @@ def device_tables(model: Model, device: Device, names: Names) -> Tables:
         masked=bool(error_mask(device)),
         codes=tuple(_code(code) for code in device.codes),
         defaults=tuple(_run(code, run) for code in device.codes for run in code_defaults(code) if not run.shared),
-        errors=tuple(_error(error, device) for error in sorted_errors(device)),
+        errors=tuple(_error(error, device) for error in errors),
+        error_hash=_hash(errors),
+        error_runs=", ".join(integer(place, 16) for place, error in enumerate(errors) if error.count > 1),
+        index_base=f"{drive_prefix(device.drive)}_INDEX_BASE" if device.drive else "",
+        slots=tuple(_slot(slot, device, names) for slot in device.slots),
         baud_rates=", ".join(integer(rate, 16) for rate in device.canopen.baud_rates) if device.canopen else "",
+    )
+
+
+def _slot(slot: Slot, device: Device, names: Names) -> SlotView:
+    function = names.claim(snake(device.id, "code_in", slot.name), device.where)
+    return SlotView(comment(slot.name), function, f"{device_prefix(device)}_{slot.name}")
+
+
+def _hash(errors: Sequence[ErrorEntry]) -> ErrorHash | None:
+    singles = [place for place, error in enumerate(errors) if error.count == 1]
+    if not singles:
+        return None
+    keys = [mixed_kind(ERROR_KINDS.index(errors[place].kind), errors[place].number) for place in singles]
+    found = perfect_hash(keys)
+    return ErrorHash(
+        kind_factor=integer(GOLDEN, 32, hexadecimal=True),
+        bucket_factor=integer(found.first, 32, hexadecimal=True),
+        bucket_shift=integer(found.bucket_shift, 8),
+        seeds=", ".join(integer(seed, 8) for seed in found.seeds),
+        slot_factor=integer(found.second, 32, hexadecimal=True),
+        slot_shift=integer(found.slot_shift, 8),
+        place_type="uint8_t" if len(errors) <= _BYTE else "uint16_t",
+        places=", ".join(integer(singles[place], 16) for place in found.places),
     )
 
 

@@ -117,6 +117,11 @@ class Writer:
         lines = tuple(line for text in prose if text for line in paragraph(text))
         return Section(comment(title), lines, tuple(self._constants), tuple(self._enumerations))
 
+    def include(self, other: "Writer") -> None:
+        """Write what another writer wrote."""
+        self._constants += other._constants
+        self._enumerations += other._enumerations
+
     def number(self, suffix: str, value: int, text: str, bits: int = 16, *, hexadecimal: bool = False) -> None:
         """Write a number of at least ``bits`` bits."""
         self._add(suffix, integer(value, bits, hexadecimal=hexadecimal), text)

@@ -8,8 +8,9 @@ from generator.emit.base import Output, Target
 from generator.emit.environment import render as fill_template
 from generator.emit.python.device import DeviceBuilder
 from generator.emit.python.text import manual_text
-from generator.emit.python.views import Head, TypeView
-from generator.model import DataType, Model
+from generator.emit.python.vectors import vectors_of
+from generator.emit.python.views import ExportView, Head, TypeView
+from generator.model import DataType, Light, Model
 from generator.naming import Scope, safe
 
 PACKAGE = "drivespec_devices"
@@ -38,6 +39,20 @@ RECORDS = (
 )
 """Record classes of the package, as ``records.py.j2`` defines them."""
 
+PANELS = ("Column", "IndicatorRow", "IndicatorTable", "Led", "Pattern", "SwitchGroup", "SwitchRow", "Table")
+"""Record classes of the package, as ``panels.py.j2`` defines them."""
+
+TELEGRAM_BASES = ("DecodeError", "EncodeError", "Telegram", "TelegramError")
+"""Classes that ``telegram.py.j2`` defines for users."""
+
+EXPORTS = (
+    ExportView("_enums", ("Flags", "Selection")),
+    ExportView("_records", (*RECORDS, "DATA_TYPES")),
+    ExportView("_panels", PANELS),
+    ExportView("_telegram", TELEGRAM_BASES),
+)
+"""What the package itself offers, by module."""
+
 
 def render(model: Model) -> dict[str, Output]:
     """Files of the distribution by their path.
@@ -51,18 +66,26 @@ def render(model: Model) -> dict[str, Output]:
     devices = [builder.build(model) for builder in builders]
     examples = [example for builder in builders if (example := builder.example()) is not None][:1]
     types = [TypeView(t.canopen_name, f"0x{t.canopen_number:04X}", t.bits, t.signed) for t in DataType]
-    shared = {"head": head, "devices": devices, "examples": examples, "records": RECORDS, "data_types": types}
+    shared = {"head": head, "devices": devices, "examples": examples, "data_types": types}
+    shared |= {"records": RECORDS, "panels": PANELS, "lights": [light.value for light in Light], "exports": EXPORTS}
 
     files = {
         "pyproject.toml": Output(fill_template("python/pyproject.toml.j2", **shared)),
         "README.md": Output(fill_template("python/README.md.j2", **shared)),
         f"{PACKAGE}/py.typed": Output(""),
     }
-    for module in ("__init__", "_records", "_enums", "_catalogue"):
+    vectors = [
+        vector for view, device in zip(devices, model.devices, strict=True) for vector in vectors_of(view, device)
+    ]
+    files["tests/test_telegrams.py"] = Output(fill_template("python/test_telegrams.py.j2", vectors=vectors, **shared))
+    for module in ("__init__", "_records", "_enums", "_catalogue", "_panels", "_telegram"):
         files[f"{PACKAGE}/{module}.py"] = Output(fill_template(f"python/{module.strip('_')}.py.j2", **shared))
     for view in devices:
         files[f"{PACKAGE}/{view.module}.py"] = Output(fill_template("python/device.py.j2", view=view))
         files[f"{PACKAGE}/{view.module}.pyi"] = Output(fill_template("python/device.pyi.j2", view=view))
+        if view.telegrams.classes:
+            files[f"{PACKAGE}/{view.telegrams_module}.py"] = Output(fill_template("python/telegrams.py.j2", view=view))
+        files[f"{PACKAGE}/{view.tables_module}.py"] = Output(fill_template("python/tables.py.j2", view=view))
         files[f"{PACKAGE}/{view.rows_module}.py"] = Output(fill_template("python/rows.py.j2", view=view))
     return files
 

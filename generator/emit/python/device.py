@@ -6,18 +6,24 @@ from collections.abc import Iterator, Sequence
 from generator.emit import names
 from generator.emit.python.docs import Documentation
 from generator.emit.python.enums import Enums, at, code_fact
+from generator.emit.python.example import sessions
+from generator.emit.python.panels import panel_tables
 from generator.emit.python.rows import code_row, device_row, dict_table, erratum_row, error_row, object_row, tuple_table
+from generator.emit.python.telegrams import Telegrams
 from generator.emit.python.text import cite_text, doc, fill, index_text, literal, manual_text
 from generator.emit.python.views import ConstantView, DeviceView, ExampleView, GroupView
 from generator.model import Device, Drive, ErrorEntry, Model
 from generator.naming import Scope, snake
 
-API = ("CODES", "DEVICE", "ERRATA", "ERRORS", "OBJECTS", "code", "code_by_name", "codes_at", "error", "errors_at",
-       "object_at")  # fmt: skip
+API = ("CODES", "DEVICE", "ERRATA", "ERRORS", "INDICATORS", "OBJECTS", "SWITCHES", "TABLES", "code", "code_by_name",
+       "codes_at", "error", "errors_at", "object_at")  # fmt: skip
 """Names that every device module has."""
 
 INDEX_API = ("code_index", "index_code")
 """Names of a device whose drive has a rule for the index."""
+
+ERROR_API = ("error_number", "error_parts")
+"""Names of a device whose drive has error numbers with fields."""
 
 
 class DeviceBuilder:
@@ -34,7 +40,7 @@ class DeviceBuilder:
     def build(self, model: Model) -> DeviceView:
         """Everything that the templates of the device need."""
         device, drive = self._device, self._device.drive
-        for name in (*API, *INDEX_API, "INDEX_BASE"):
+        for name in (*API, *INDEX_API, *ERROR_API, "INDEX_BASE"):
             self._scope.add(name, device.where)
         if drive is not None:
             self._enums.add_drive(drive)
@@ -45,12 +51,16 @@ class DeviceBuilder:
             tuple_table("ERRORS", map(error_row, device.errors)),
             tuple_table("ERRATA", map(erratum_row, device.errata)),
         )
+        telegrams = Telegrams(device, self._scope, self._enums).build()
         constants = [constant.name for group in groups for constant in group.constants]
         source = manual_text(device.manual)
-        functions = API if drive is None else (*API, *INDEX_API)
+        classes = [view.name for view in telegrams.classes]
+        functions = API if drive is None else (*API, *INDEX_API, *(ERROR_API if drive.error_fields else ()))
         return DeviceView(
             module=self._module,
             rows_module=f"_{self._module}_rows",
+            tables_module=f"_{self._module}_tables",
+            telegrams_module=f"_{self._module}_telegrams",
             title=device.title,
             title_literal=literal(device.title),
             manual=source,
@@ -64,16 +74,20 @@ class DeviceBuilder:
             ),
             has_index_base=drive is not None,
             index_base=literal(None if drive is None else drive.index_base),
-            response_mask=f"0x{_response_mask(drive):08X}",
+            ignored_mask=f"0x{_ignored_mask(drive):08X}",
+            has_error_fields=drive is not None and bool(drive.error_fields),
             groups=groups,
             enums=self._enums.views,
-            exported=fill((*functions, *constants, *(enum.name for enum in self._enums.views))),
+            telegrams=telegrams,
+            telegram_names=fill(classes),
+            exported=fill((*functions, *constants, *classes, *(enum.name for enum in self._enums.views))),
             device_row=fill(device_row(device)),
             tables=(
                 *facts,
                 dict_table("SELECTIONS", "str", self._enums.rows("Selection")),
                 dict_table("FLAGS", "str", self._enums.rows("Flags")),
             ),
+            panels=panel_tables(device),
         )
 
     def example(self) -> ExampleView | None:
@@ -94,6 +108,7 @@ class DeviceBuilder:
             value=values[0],
             member=f"<{enum.name}.{enum.members[0].name}: {values[0]} {code.options[0].label!r}>",
             unknown=max(values) + 1,
+            sessions=sessions(self._device, self._module),
         )
 
     def _groups(self) -> Iterator[GroupView]:
@@ -131,10 +146,10 @@ class DeviceBuilder:
             yield ConstantView(name, f"0x{error.number:08X}", self._docs.error(error))
 
 
-def _response_mask(drive: Drive | None) -> int:
-    """Bits of an error number that hold the response; 0 where the drive has no such field."""
+def _ignored_mask(drive: Drive | None) -> int:
+    """Bits of an error number that hold the response and the instance; 0 where the drive has no such fields."""
     fields = () if drive is None else drive.error_fields
-    return next((field.mask for name, field in fields if name == "response"), 0)
+    return sum(field.mask for name, field in fields if name in ("response", "instance"))
 
 
 def _error_names(errors: Sequence[ErrorEntry]) -> list[str]:

@@ -14,6 +14,8 @@ from generator.model import (
     Drive,
     DriveCommand,
     DriveModule,
+    Field,
+    Layout,
     Option,
     Response,
     SubCode,
@@ -111,6 +113,12 @@ def subindex_fact(entry: DictionaryObject, sub: SubIndex) -> EnumFact:
     if len(entry.subindexes) > 1:
         name = f"{pascal(entry.designation.replace('-', ''))}Sub{sub.number}{pascal(sub.name)}"
     return EnumFact(("object", entry.kind, entry.index), name, title, sub.where)
+
+
+def telegram_fact(layout: Layout, owner: str, field: Field, path: str) -> EnumFact:
+    """A field of a telegram, or the part of one that ``path`` names; layouts that list the same share an enum."""
+    title = f"{field.title}: {path} ({layout.name}). {cite_text(layout.cite)}."
+    return EnumFact(("telegram", path), f"{owner}{pascal(path)}", title, field.where)
 
 
 def _option_members(options: tuple[Option, ...]) -> Iterator[MemberView]:

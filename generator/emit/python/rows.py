@@ -54,7 +54,7 @@ def code_row(code: Code, enums: Enums) -> RowView:
         code.scaling,
         _range_row(code.range),
         _default_row(code.default),
-        _cite_row(code.default_cite),
+        cite_row(code.default_cite),
         enums.selection(fact, code.options),
         enums.flags(fact, code.bits),
         _field_rows(code.fields),
@@ -65,7 +65,7 @@ def code_row(code: Code, enums: Enums) -> RowView:
         code.description,
         code.shared_by,
         code.origin.value,
-        _cite_row(code.cite),
+        cite_row(code.cite),
         code.errata,
     )
     return RowView(f"{code.number}: ", fill(row))
@@ -85,7 +85,7 @@ def object_row(entry: DictionaryObject, enums: Enums) -> RowView:
         runs(_subindex_row(entry, sub, enums) for sub in entry.subindexes),
         entry.description,
         entry.origin.value,
-        _cite_row(entry.cite),
+        cite_row(entry.cite),
         entry.errata,
     )
     return RowView(f"{index_text(entry)}: ", fill(row))
@@ -130,7 +130,7 @@ def error_row(error: ErrorEntry) -> RowView:
         error.remedies,
         error.description,
         error.origin.value,
-        _cite_row(error.cite),
+        cite_row(error.cite),
         error.errata,
     )
     return RowView("", fill(row))
@@ -174,7 +174,7 @@ def device_row(device: Device) -> tuple[Literal, ...]:
             manual.url,
             manual.pages,
         ),
-        _cite_row(device.cite),
+        cite_row(device.cite),
         None if drive is None else _drive_row(drive),
         tuple((s.name, s.first_code, s.last_code, s.code_offset, s.error_offset) for s in device.slots),
         None
@@ -184,7 +184,7 @@ def device_row(device: Device) -> tuple[Literal, ...]:
             canopen.granularity,
             canopen.node_address,
             canopen.boot_up_master,
-            _cite_row(canopen.cite),
+            cite_row(canopen.cite),
         ),
     )
 
@@ -235,7 +235,8 @@ def _follows_row(rule: NodeRelative | None) -> Literal:
     return None if rule is None else rule.base
 
 
-def _cite_row(cite: Cite | None) -> Literal:
+def cite_row(cite: Cite | None) -> Literal:
+    """A citation."""
     return None if cite is None else (cite.manual, cite.chapter, cite.page)
 
 

@@ -13,6 +13,14 @@ class Head:
 
 
 @dataclass(frozen=True, slots=True)
+class ExportView:
+    """Names of a module that the package offers."""
+
+    module: str
+    names: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
 class TypeView:
     """A data type."""
 
@@ -80,11 +88,79 @@ class TableView:
 
 
 @dataclass(frozen=True, slots=True)
+class SizesView:
+    """A table of sizes by the value of a field, filled into lines."""
+
+    name: str
+    lines: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class FieldView:
+    """A field of a telegram; ``constant`` is "" where its value is free."""
+
+    name: str
+    type: str
+    constant: str
+    doc: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class PartView:
+    """Bits of a field of a telegram; ``label`` names them in errors."""
+
+    name: str
+    field: str
+    low: int
+    mask: str
+    label: str
+    settable: bool
+    doc: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class TelegramClassView:
+    """A class of a telegram (``base`` "Telegram") or of an entry of its groups ("Fields", without code)."""
+
+    name: str
+    base: str
+    doc: tuple[str, ...]
+    slots: tuple[str, ...]
+    fields: tuple[FieldView, ...]
+    parameters: tuple[str, ...]
+    assignments: tuple[str, ...]
+    parts: tuple[PartView, ...]
+    decode: tuple[str, ...]
+    encode: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class VectorView:
+    """A worked telegram: its bytes as hexadecimal text, and its fields as lines of a dict of literals."""
+
+    id: str
+    module: str
+    name: str
+    data: str
+    fields: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class TelegramsView:
+    """The telegrams of a device."""
+
+    sizes: tuple[SizesView, ...]
+    classes: tuple[TelegramClassView, ...]
+
+
+@dataclass(frozen=True, slots=True)
 class DeviceView:
     """A device module, its stub and its rows."""
 
     module: str
     rows_module: str
+    telegrams_module: str
+    tables_module: str
     title: str
     title_literal: str
     manual: str
@@ -92,12 +168,24 @@ class DeviceView:
     doc: tuple[str, ...]
     has_index_base: bool
     index_base: str
-    response_mask: str
+    ignored_mask: str
+    has_error_fields: bool
     groups: tuple[GroupView, ...]
     enums: tuple[EnumView, ...]
+    telegrams: TelegramsView
+    telegram_names: tuple[str, ...]
     exported: tuple[str, ...]
     device_row: tuple[str, ...]
     tables: tuple[TableView, ...]
+    panels: tuple[TableView, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class SessionView:
+    """A session with its title; lines with and without prompt."""
+
+    title: str
+    lines: tuple[str, ...]
 
 
 @dataclass(frozen=True, slots=True)
@@ -114,3 +202,4 @@ class ExampleView:
     value: int
     member: str
     unknown: int
+    sessions: tuple[SessionView, ...]

@@ -1,24 +1,25 @@
-"""Target "rust": the crate ``drivespec-devices``, facts as constants for programs with or without an operating system.
+"""Target "rust": the crate ``drivespec-devices``, facts and telegrams for programs with or without an operating system.
 
-Each device is a module of small modules: codes, selection lists (enums), bit masks, objects, errors, errata.  Codes
-of a second slot are written as their difference to the first; the enums and masks of the first serve both.
+Each device is a module of small modules: codes, selection lists (enums), bit masks, objects, errors, LEDs, switches,
+telegrams, errata.  Codes of a second slot are written as their difference to the first; the enums and masks of the
+first serve both.
 """
 
 from collections.abc import Mapping, Sequence
 
 from generator.emit.base import Output, Target
 from generator.emit.environment import render as fill
-from generator.emit.rust import facts
+from generator.emit.rust import facts, words
 from generator.emit.rust.device import DeviceFiles
 from generator.emit.rust.drive import drive_file, drive_module
 from generator.emit.rust.example import example
 from generator.emit.rust.notice import notice
-from generator.emit.rust.syntax import array, declaration, hexadecimal, string, type_name
-from generator.emit.rust.views import DataTypeFigures, Module, TypeEnum, TypeVariant
-from generator.model import DataType, Model, Origin
+from generator.emit.rust.syntax import array, constant_name, declaration, doc, hexadecimal, string, type_name
+from generator.emit.rust.views import DataTypeFigures, Module, Record, TypeEnum, TypeVariant
+from generator.model import DataType, Light, Model, Origin
 from generator.naming import Scope, safe, snake
 
-_OWN_MODULES = ("default", "drives", "macros", "std", "types")
+_OWN_MODULES = ("cob_ids", "codec", "default", "drives", "macros", "std", "types")
 """Modules and features that are no devices."""
 _ORIGINS = {
     Origin.MANUAL: "Printed in the manual cited.",
@@ -26,6 +27,14 @@ _ORIGINS = {
     Origin.DERIVED: "Calculated from printed facts.",
     Origin.ASSUMED: "Documented nowhere, an assumption.",
     Origin.PUBLIC: "Printed in another public document.",
+}
+_LIGHTS = {
+    Light.ANY: "Not said, or without meaning.",
+    Light.OFF: "Off.",
+    Light.ON: "On.",
+    Light.FLICKER: "Flickering.",
+    Light.BLINK: "On and off for the same time.",
+    Light.FLASH: "Flashes and a pause.",
 }
 _KINDS = {"canopen": "Object dictionary of CANopen.", "profidrive": "Parameters of PROFIdrive."}
 _ACCESSES = {
@@ -90,10 +99,27 @@ def _crate_files(
             names=sorted(module.name for module in modules),
             example_module=example_module,
         ),
+        "src/cob_ids.rs": _cob_ids(model, head),
+        "src/codec.rs": fill("rust/codec.rs.j2", notice=head),
         "src/macros.rs": fill("rust/macros.rs.j2", notice=head),
         "src/types.rs": _types(head),
         "src/drives.rs": fill("rust/drives.rs.j2", notice=head, drives=sorted(map(drive_module, model.drives))),
     }
+
+
+def _cob_ids(model: Model, head: str) -> str:
+    records = []
+    for entry in model.cob_ids:
+        name = constant_name(snake(entry.name))
+        records.append(
+            Record(
+                name,
+                doc([words.headline(entry.name)], [words.source(entry.cite, Origin.STANDARD)]),
+                declaration(name, "CobId", facts.cob_id(entry)),
+            )
+        )
+    table = declaration("TABLE", "&[CobId]", array(record.name for record in records))
+    return fill("rust/cob_ids.rs.j2", notice=head, records=records, table=table)
 
 
 def _types(head: str) -> str:
@@ -108,6 +134,11 @@ def _types(head: str) -> str:
             "Origin",
             "How a fact came to be known.",
             [(type_name(origin.value), origin.value, text) for origin, text in _ORIGINS.items()],
+        ),
+        _enum(
+            "Light",
+            "What an LED does.",
+            [(type_name(light.value), light.value, text) for light, text in _LIGHTS.items()],
         ),
         _enum(
             "ObjectKind",

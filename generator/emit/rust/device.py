@@ -1,4 +1,4 @@
-"""The modules of one device: codes, selection lists, masks, objects, errors, errata."""
+"""The modules of one device: codes, selection lists, masks, objects, errors, LEDs, switches, telegrams, errata."""
 
 from collections import Counter
 from collections.abc import Iterable, Sequence
@@ -10,6 +10,7 @@ from generator.emit.environment import render
 from generator.emit.rust import facts, lists, words
 from generator.emit.rust.drive import drive_module
 from generator.emit.rust.notice import notice
+from generator.emit.rust.numbers import numbered
 from generator.emit.rust.syntax import (
     Expression,
     Group,
@@ -26,6 +27,8 @@ from generator.emit.rust.syntax import (
     string,
     struct,
 )
+from generator.emit.rust.telegrams import Telegrams
+from generator.emit.rust.vectors import vector_file
 from generator.emit.rust.views import Error, Module, Record
 from generator.model import Code, Device, DictionaryObject, Erratum, ErrorEntry, Model, SubIndex
 from generator.naming import Scope
@@ -53,6 +56,7 @@ class DeviceFiles:
         self.selections = lists.selections(found, Scope(f"selection lists of {module}"))
         self._masks = lists.masks(found, Scope(f"bit masks of {module}"))
         self.error_tables = _error_tables(device)
+        self.telegrams = Telegrams(device)
 
     def render(self) -> dict[str, str]:
         """Files by their path in the crate; a device has no module for what it lacks.
@@ -65,19 +69,36 @@ class DeviceFiles:
         if device.codes:
             files["codes"] = self._codes()
         if self.selections:
-            files["selections"] = self._fill("selections", selections=list(dict.fromkeys(self.selections.values())))
+            files["selections"] = self._fill(
+                "selections", subject="Selection lists", selections=list(dict.fromkeys(self.selections.values()))
+            )
         if self._masks:
             files["bits"] = self._fill("bits", modules=list(dict.fromkeys(self._masks.values())))
         if device.objects:
             files["objects"] = self._objects()
         if device.errors:
             files["errors"] = self._fill("errors", kinds=sorted(self.error_tables))
+        if tables_of_numbers := numbered(device):
+            files["numbers"] = self._fill(
+                "selections", subject="States, commands and data types", selections=tables_of_numbers
+            )
+        if device.indicators:
+            tables = array(map(facts.indicator, device.indicators))
+            files["indicators"] = self._fill("indicators", tables=declaration("TABLES", "&[IndicatorTable]", tables))
+        if device.switches:
+            groups = array(map(facts.switches, device.switches))
+            files["switches"] = self._fill("switches", groups=declaration("GROUPS", "&[SwitchGroup]", groups))
+        if device.layouts:
+            files["telegrams"] = self._fill(
+                "telegrams", used=self.telegrams.used, structs=self.telegrams.structs, sizes=self.telegrams.sizes
+            )
         if device.errata:
             files["errata"] = self._errata()
         return {
             f"{folder}.rs": self._device(sorted(files)),
             **{f"{folder}/{part}.rs": text for part, text in files.items()},
             **{f"{folder}/errors/{kind}.rs": self._error_kind(kind) for kind in self.error_tables},
+            **({f"tests/{self.module.name}.rs": self._vectors()} if device.layouts else {}),
         }
 
     def error_mask(self, kind: str) -> int:
@@ -87,6 +108,9 @@ class DeviceFiles:
 
     def _fill(self, template: str, **view: object) -> str:
         return render(f"rust/{template}.rs.j2", notice=self._notice, title=self.module.title, **view)
+
+    def _vectors(self) -> str:
+        return vector_file(self.device, self.module.name, self.module.title, self._notice)
 
     def _device(self, parts: Sequence[str]) -> str:
         comment = doc([words.headline(self.device.title)], words.device_points(self.device, self.module.manual), "//!")
@@ -111,6 +135,8 @@ class DeviceFiles:
                 ("codes", "codes::TABLE" if device.codes else "CodeTable::EMPTY"),
                 ("objects", "objects::TABLE" if device.objects else "ObjectTable::EMPTY"),
                 ("errors", array(f"errors::{kind}::TABLE" for kind in self.error_tables)),
+                ("indicators", "indicators::TABLES" if device.indicators else "&[]"),
+                ("switches", "switches::GROUPS" if device.switches else "&[]"),
                 ("errata", "errata::TABLE" if device.errata else "&[]"),
             ],
         )

@@ -52,6 +52,10 @@ def drive_file(model: Model, drive: Drive) -> str:
             )
             for constant, (name, field) in zip(field_names, drive.error_fields, strict=True)
         ],
+        accessors=[
+            (safe(snake(name), "rust"), f"with_{snake(name)}", constant)
+            for constant, (name, _) in zip(field_names, drive.error_fields, strict=True)
+        ],
         record=declaration("DRIVE", "Drive", facts.drive(drive, field_names)),
     )
 

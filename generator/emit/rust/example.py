@@ -6,6 +6,8 @@ from itertools import count
 from generator.emit import names
 from generator.emit.rust.device import DeviceFiles
 from generator.emit.rust.syntax import constant_name, hexadecimal, string
+from generator.emit.rust.telegrams import telegram_name
+from generator.emit.rust.vectors import filled, octets
 
 
 def example(devices: Sequence[DeviceFiles]) -> tuple[str, list[str]]:
@@ -13,10 +15,8 @@ def example(devices: Sequence[DeviceFiles]) -> tuple[str, list[str]]:
 
     The first of the devices with the most kinds of facts is taken.
     """
-    candidates = [
-        (files.module.name, [part for part in (_codes(files), _selections(files), _errors(files)) if part])
-        for files in devices
-    ]
+    kinds = (_codes, _selections, _errors, _telegrams)
+    candidates = [(files.module.name, [part for kind in kinds if (part := kind(files))]) for files in devices]
     module, parts = max(candidates, key=lambda candidate: len(candidate[1]), default=("", []))
     lines = [line for part in parts for line in ("", *part)][1:]
     return (module, lines) if lines else ("", [])
@@ -65,4 +65,22 @@ def _errors(files: DeviceFiles) -> list[str]:
         "// An error number as the device reports it, with all bits set that do not tell which error it is.",
         f"let error = {kind}::TABLE.get({hexadecimal(reported, 8)}).unwrap();",
         f"assert_eq!(error.name, {string(errors[0].name)});",
+    ]
+
+
+def _telegrams(files: DeviceFiles) -> list[str]:
+    if not files.device.examples:
+        return []
+    example = files.device.examples[0]
+    layout = next(layout for layout in files.device.layouts if layout.id == example.layout)
+    data, name = filled(layout, example.data), telegram_name(layout)
+    return [
+        f"use drivespec_devices::{files.module.name}::telegrams::{name};",
+        "",
+        "// Bytes become values, values become bytes; a telegram that was cut off is refused.",
+        f"let telegram = {name}::decode({octets(data)}).unwrap();",
+        f"let mut buffer = [0; {len(data)}];",
+        f"assert_eq!(telegram.encode(&mut buffer), Ok({len(data)}));",
+        f"assert_eq!(&buffer, {octets(data)});",
+        f'assert_eq!({name}::decode(&buffer[..1]).unwrap_err().as_str(), "truncated");',
     ]

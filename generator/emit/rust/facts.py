@@ -1,5 +1,6 @@
 """Facts of the model as Rust expressions of the records in module ``types`` of the crate."""
 
+from fractions import Fraction
 from math import ceil, floor
 
 from generator.emit.rust.syntax import (
@@ -20,6 +21,7 @@ from generator.model import (
     BitField,
     CanOpenFacts,
     Cite,
+    CobId,
     CodeRef,
     DataType,
     Default,
@@ -27,12 +29,17 @@ from generator.model import (
     Erratum,
     ErratumPlace,
     ErrorEntry,
+    IndicatorTable,
+    Led,
     Manual,
     NodeRelative,
     ObjectRef,
     Origin,
+    Pattern,
     Range,
     Slot,
+    SwitchGroup,
+    SwitchRow,
 )
 
 OBJECT_KINDS = {"canopen": "CanOpen", "profidrive": "Profidrive"}
@@ -209,6 +216,112 @@ def drive(value: Drive, field_names: tuple[str, ...]) -> Expression:
 def help_texts(value: ErrorEntry) -> Expression:
     """Record ``Help``."""
     return struct("Help", [("causes", texts(value.causes)), ("remedies", texts(value.remedies))])
+
+
+def indicator(value: IndicatorTable) -> Expression:
+    """Record ``IndicatorTable``."""
+    rows = [
+        struct(
+            "IndicatorRow",
+            [
+                ("patterns", array(map(_pattern, row.patterns))),
+                ("state", string(row.state)),
+                ("meaning", string(row.meaning)),
+                ("origin", origin(row.origin)),
+                ("cite", cite(row.cite)),
+            ],
+        )
+        for row in value.rows
+    ]
+    return struct(
+        "IndicatorTable",
+        [
+            ("id", string(value.id)),
+            ("name", string(value.name)),
+            ("leds", array(map(_led, value.leds))),
+            ("rows", array(rows)),
+            ("cite", cite(value.cite)),
+            ("errata", texts(value.errata)),
+        ],
+    )
+
+
+def _led(value: Led) -> Expression:
+    return struct(
+        "Led", [("label", string(value.label)), ("colour", string(value.colour)), ("name", string(value.name))]
+    )
+
+
+def _pattern(value: Pattern) -> Expression:
+    light = f"Light::{type_name(value.light.value)}"
+    if value == Pattern(value.light):
+        return f"Pattern::of({light})"
+    return struct(
+        "Pattern",
+        [
+            ("light", light),
+            ("colour", text(value.colour)),
+            ("period", number(milliseconds(value.period))),
+            ("flashes", number(value.flashes)),
+            ("pause", number(milliseconds(value.pause))),
+        ],
+    )
+
+
+def milliseconds(value: Fraction | None) -> int | None:
+    """Seconds as whole milliseconds."""
+    return None if value is None else round(1000 * value)
+
+
+def switches(value: SwitchGroup) -> Expression:
+    """Record ``SwitchGroup``."""
+    valid = None if value.valid is None else f"({value.valid[0]}, {value.valid[1]})"
+    return struct(
+        "SwitchGroup",
+        [
+            ("id", string(value.id)),
+            ("name", string(value.name)),
+            ("labels", texts(value.labels)),
+            ("weights", array(map(str, value.weights))),
+            ("valid", some(valid)),
+            ("unit", string(value.unit)),
+            ("sets", array(map(code_ref, value.sets))),
+            ("rows", array(map(_switch_row, value.rows))),
+            ("notes", texts(value.notes)),
+            ("origin", origin(value.origin)),
+            ("cite", cite(value.cite)),
+            ("errata", texts(value.errata)),
+        ],
+    )
+
+
+def _switch_row(value: SwitchRow) -> Expression:
+    digits = (len(value.positions) + 3) // 4
+    return struct(
+        "SwitchRow",
+        [
+            ("value", string(value.value)),
+            ("number", number(int(value.value) if value.value.isdecimal() else None)),
+            ("on", hexadecimal(_switch_mask(value, "1"), digits)),
+            ("either", hexadecimal(_switch_mask(value, "x"), digits)),
+        ],
+    )
+
+
+def _switch_mask(value: SwitchRow, position: str) -> int:
+    return sum(1 << switch for switch, found in enumerate(value.positions) if found == position)
+
+
+def cob_id(value: CobId) -> Expression:
+    """Record ``CobId``."""
+    return struct(
+        "CobId",
+        [
+            ("name", string(value.name)),
+            ("id", node_relative(NodeRelative(value.base))),
+            ("objects", array(map(object_ref, value.objects))),
+        ],
+    )
 
 
 def erratum(value: Erratum) -> Expression:

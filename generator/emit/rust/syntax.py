@@ -35,6 +35,11 @@ def struct(name: str, fields: Iterable[tuple[str, Expression]]) -> Group:
     return _group(f"{name} {{", [prefixed(f"{field}: ", value) for field, value in fields], "}", " ")
 
 
+def shorthand(name: str, fields: Iterable[str]) -> Group:
+    """Struct expression of variables that have the names of the fields."""
+    return _group(f"{name} {{", list(fields), "}", " ")
+
+
 def brief(name: str, fields: Iterable[tuple[str, Expression]]) -> Group:
     """Struct expression without the fields that ``EMPTY`` of the type gives: ``None``, empty lists and texts, false."""
     listed = list(fields)
@@ -74,11 +79,16 @@ def some(expression: Expression | None) -> Expression:
 
 def declaration(name: str, kind: str, value: Expression, indent: int = 0, visibility: str = "pub ") -> str:
     """Item of a constant of the type ``kind``; without indent on its first line."""
-    head = f"{visibility}const {name}: {kind} ="
+    return statement(f"{visibility}const {name}: {kind} =", value, indent)
+
+
+def statement(head: str, value: Expression, indent: int) -> str:
+    """``head`` (``let name =`` or empty) with a value, ended; without indent on its first line."""
+    before = f"{head} " if head else ""
     flat = value if isinstance(value, str) else value.flat
-    if len(f"{head} {flat};") + indent > WIDTH >= indent + _INDENT + len(flat) + 1:
+    if head and len(before) + len(flat) + 1 + indent > WIDTH >= indent + _INDENT + len(flat) + 1:
         return f"{head}\n{' ' * (indent + _INDENT)}{flat};"
-    return layout(prefixed(f"{head} ", value, ";"), indent)
+    return layout(prefixed(before, value, ";"), indent)
 
 
 def layout(expression: Expression, indent: int = 0, after: int = 0) -> str:

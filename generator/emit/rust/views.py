@@ -34,6 +34,76 @@ class Constant:
 
 
 @dataclass(frozen=True, slots=True)
+class Part:
+    """Group of bits of a field: how it is read, and what the field becomes with it, "" where the field is constant.
+
+    ``limit`` is the largest value where the type holds more, else "".
+    """
+
+    getter: str
+    setter: str
+    doc: str
+    label: str
+    field: str
+    type: str
+    read: str
+    written: str
+    limit: str
+
+
+@dataclass(frozen=True, slots=True)
+class Sizes:
+    """Function that tells the length of a field: (value, length) for each value of the type ``type``."""
+
+    name: str
+    type: str
+    arms: tuple[tuple[str, int], ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Fields:
+    """Struct of a telegram or of an entry of a group: its fields as constants and names, and the code of both ways.
+
+    ``size`` is the length in bytes where it is always the same, else "".  ``read`` and ``write`` are statements.
+    """
+
+    name: str
+    lifetime: str
+    doc: str
+    whole: bool
+    size: str
+    fields: tuple[Constant, ...]
+    constants: tuple[Constant, ...]
+    parts: tuple[Part, ...]
+    reader: str
+    writer: str
+    read: tuple[str, ...]
+    write: tuple[str, ...]
+    found: str
+
+
+@dataclass(frozen=True, slots=True)
+class Vector:
+    """Test of a worked telegram: declarations of its ``size`` bytes and of the values expected."""
+
+    name: str
+    doc: str
+    data: str
+    expected: str
+    telegram: str
+    size: str
+
+
+@dataclass(frozen=True, slots=True)
+class RandomTest:
+    """Test of a layout with random bytes, up to ``size`` of them."""
+
+    name: str
+    telegram: str
+    size: str
+
+
+@dataclass(frozen=True, slots=True)
 class Masks:
     """Module of the bits of one code or object: masks, and declarations of the records, "" where there are none."""
 

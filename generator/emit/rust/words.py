@@ -16,6 +16,7 @@ from generator.model import (
     DictionaryObject,
     Erratum,
     ErrorEntry,
+    Layout,
     NodeRelative,
     Option,
     Origin,
@@ -154,6 +155,15 @@ def error_points(error: ErrorEntry, digits: int, errata: Iterable[Erratum]) -> l
         *(f"Cause: {markdown(text)}" for text in error.causes),
         *(f"Remedy: {markdown(text)}" for text in error.remedies),
         source(error.cite, error.origin),
+        *map(_erratum, errata),
+    ]
+
+
+def layout_points(layout: Layout, errata: Iterable[Erratum]) -> list[str]:
+    """What the comment of a telegram lists."""
+    return [
+        f"Protocol: {markdown(layout.protocol)}",
+        source(layout.cite, layout.origin),
         *map(_erratum, errata),
     ]
 

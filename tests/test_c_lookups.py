@@ -1,0 +1,317 @@
+"""Arithmetic and lookups of the C headers: run over whole domains and compared with the model."""
+
+import random
+from fractions import Fraction
+from math import floor
+from pathlib import Path
+
+import pytest
+from test_c import COMPILERS, Values, assert_same, compile_c, run
+
+from generator.emit.c.common import ERROR_KINDS
+from generator.emit.c.hashing import mixed_kind, perfect_hash
+from generator.emit.c.panel import LIGHTS
+from generator.model import Code, Device, Light, Model, Pattern, SwitchGroup
+from generator.naming import screaming, snake
+
+
+@pytest.fixture(scope="session")
+def c(generated: Path) -> Path:
+    """The folder of the target."""
+    return generated / "c"
+
+
+def result(folder: Path, c: Path, headers: list[str], body: str, compiler: str = "cc", standard: str = "c99") -> Values:
+    """What a program of statements prints."""
+    source = folder / "program.c"
+    includes = "".join(f'#include "drivespec/{header}"\n' for header in headers)
+    source.write_text(f"#include <stdio.h>\n{includes}\nint main(void)\n{{\n{body}    return 0;\n}}\n")
+    options = () if compiler.startswith("clang") else ("-fsanitize=undefined", "-fno-sanitize-recover=all")
+    return run(compile_c(folder, source, compiler, standard, f"-I{c / 'include'}", *options))
+
+
+# Errors.
+
+
+def hits(keys: list[int], probes: list[int]) -> set[int]:
+    found = perfect_hash(keys)
+    return {probe for probe in probes if keys[found.find(probe)] == probe}
+
+
+def test_perfect_hashes_find_each_key_and_no_other() -> None:
+    rng = random.Random(1)
+    for size in (1, 2, 3, 17, 300):
+        sparse = rng.sample(range(2**32), size)
+        clustered = [number // 25 << 16 | number % 25 for number in range(size)]
+        for keys in (sparse, clustered):
+            strangers = rng.sample(range(2**32), 1000)
+            assert hits(keys, keys + strangers) == set(keys) | (set(strangers) & set(keys))
+
+
+@pytest.mark.parametrize("keys", [[], [1, 2, 1]])
+def test_perfect_hashes_take_distinct_keys(keys: list[int]) -> None:
+    with pytest.raises(ValueError, match="distinct"):
+        perfect_hash(keys)
+
+
+def test_kinds_of_errors_do_not_share_keys(model: Model) -> None:
+    for device in model.devices:
+        keys = [mixed_kind(ERROR_KINDS.index(e.kind), e.number) for e in device.errors]
+        assert len(set(keys)) == len(keys)
+
+
+def test_reported_errors_whatever_their_response_and_instance(model: Model, c: Path, tmp_path: Path) -> None:
+    tried = 0
+    for device in model.devices:
+        numbers = [n for e in device.errors if e.kind == "device" for n in (e.number, e.last)]
+        if not numbers or device.drive is None:
+            continue
+        used = 0
+        for number in numbers:
+            used |= number
+        free = sum(field.mask for _, field in device.drive.error_fields if not field.mask & used)
+        drive = device.drive.id
+        body, expected = "", {}
+        for number in numbers:
+            for other in (0, free, free & 0x5A5A5A5A):
+                reported = number | other
+                body += (
+                    f'    printf("{reported}=%lu\\n", '
+                    f"(unsigned long){device.id}_find_reported_error(UINT32_C({reported}))->first);\n"
+                )
+                expected[str(reported)] = next(e.number for e in device.errors if e.number <= number <= e.last)
+                tried += 1
+            for label, field in device.drive.error_fields:
+                function = f"{snake(drive)}_error_{snake(label)}"
+                body += f'    printf("{function} {number}=%lu\\n", (unsigned long){function}(UINT32_C({number})));\n'
+                expected[f"{function} {number}"] = number >> field.low & 2 ** (field.high - field.low + 1) - 1
+        body = "".join(dict.fromkeys(body.splitlines(keepends=True)))
+        assert_same(result(tmp_path, c, [f"{device.id}_tables.h"], body), dict(expected))
+    assert tried
+
+
+# Codes.
+
+
+def test_index_and_slot_of_each_code(model: Model, c: Path, tmp_path: Path) -> None:
+    for device in model.devices:
+        if not device.codes:
+            continue
+        assert device.drive is not None
+        drive, stem = snake(device.drive.id), device.id
+        body = (
+            "    for (uint32_t n = 0u; n <= 0xFFFFu; n++) {\n"
+            f"        const drivespec_code *const code = {stem}_find_code_by_index((uint16_t)n);\n"
+            "        if (code != NULL) {\n"
+            '            printf("index %lu=%u\\n", (unsigned long)n, (unsigned)code->number);\n'
+            f'            printf("code %lu=%u\\n", (unsigned long)n, (unsigned){drive}_code((uint16_t)n));\n'
+            f'            printf("back %u=%u\\n", (unsigned)code->number, (unsigned){drive}_index(code->number));\n'
+        )
+        expected: Values = {}
+        for slot in device.slots:
+            function = snake(device.id, "code_in", slot.name)
+            body += f'            printf("{function} %u=%u\\n", (unsigned)code->number, '
+            body += f"(unsigned){function}(code->number));\n"
+            twins = {(code.twin_of, code.slot): code.number for code in device.codes}
+            expected |= {
+                f"{function} {code.number}": twins[code.twin_of, code.slot and slot.name] for code in device.codes
+            }
+        body += "        }\n    }\n"
+        for code in device.codes:
+            expected |= {f"index {code.index}": code.number, f"code {code.index}": code.number}
+            expected[f"back {code.number}"] = code.index
+        assert_same(result(tmp_path, c, [f"{stem}_tables.h"], body), expected)
+
+
+def test_codes_by_name_through_all_slots(model: Model, c: Path, tmp_path: Path) -> None:
+    for device in model.devices:
+        if not device.codes:
+            continue
+        body = (
+            f"    for (size_t i = 0u; i < {screaming(device.id)}_CODE_COUNT; i++) {{\n"
+            f"        const char *const name = {device.id}_codes[i].name;\n"
+            "        const drivespec_code *code = NULL;\n"
+            '        printf("%u=", (unsigned)i);\n'
+            f"        while ((code = {device.id}_find_code_by_name(name, code)) != NULL) {{\n"
+            '            printf("%u;", (unsigned)code->number);\n'
+            "        }\n"
+            '        printf("\\n");\n'
+            "    }\n"
+            f'    printf("none=%d\\n", (int)({device.id}_find_code_by_name("", NULL) == NULL));\n'
+        )
+        expected: Values = {
+            str(place): "".join(f"{other.number};" for other in device.codes if other.name == code.name)
+            for place, code in enumerate(device.codes)
+        }
+        assert_same(result(tmp_path, c, [f"{device.id}_tables.h"], body), expected | {"none": 1})
+
+
+def bounds(code: Code) -> tuple[Fraction, Fraction] | None:
+    """Range of a code in wire values."""
+    if code.range is not None:
+        return code.range.low * (code.scaling or 1), code.range.high * (code.scaling or 1)
+    if not code.data_type.is_number:
+        return None
+    return Fraction(code.data_type.lowest), Fraction(min(code.data_type.highest, 2**63 - 1))
+
+
+def test_values_to_wire_values_and_back(model: Model, c: Path, tmp_path: Path) -> None:
+    for device in model.devices:
+        if not device.codes:
+            continue
+        body, expected = "    int64_t wire = 0;\n    double value = 0.0;\n", {}
+        for code in device.codes:
+            limits = bounds(code)
+            factor = code.scaling or 1
+            ends = [0, 1] if limits is None else [floor(limits[0]), floor(limits[1]), floor(sum(limits) / 2)]
+            for wire in sorted({end + step for end in ends for step in (-1, 0, 1)}):
+                if abs(wire) > 2**40:
+                    continue
+                inside = limits is not None and limits[0] <= wire <= limits[1]
+                key = f"{code.number} {wire}"
+                record = f"{device.id}_find_code({code.number}u)"
+                towards_zero = "" if wire == 0 else " - 0.4" if wire > 0 else " + 0.4"
+                body += f"    value = ({wire}.0{towards_zero}) / {factor}.0;\n    wire = 99;\n"
+                body += f'    printf("to {key}=%d ", (int)drivespec_to_wire({record}, value, &wire));\n'
+                body += '    printf("%lld\\n", (long long)wire);\n    value = 0.5;\n'
+                body += f'    printf("from {key}=%d ", (int)drivespec_from_wire({record}, INT64_C({wire}), &value));\n'
+                body += f'    printf("%d\\n", (int)(value == {wire}.0 / {factor}.0));\n'
+                expected[f"to {key}"] = f"{int(inside)} {wire if inside else 99}"
+                expected[f"from {key}"] = f"{int(inside)} {int(inside or Fraction(wire, factor) == Fraction(1, 2))}"
+        assert_same(result(tmp_path, c, [f"{device.id}_tables.h"], body), dict(expected))
+
+
+def test_values_that_no_wire_value_is_near_to(model: Model, c: Path, tmp_path: Path) -> None:
+    device = next(d for d in model.devices if any(code.range for code in d.codes))
+    code = next(code for code in device.codes if code.range)
+    record = f"{device.id}_find_code({code.number}u)"
+    body = "    int64_t wire = 7;\n    double zero = 0.0;\n"
+    for name, text in (("nan", "zero / zero"), ("inf", "1.0e300 * 1.0e300"), ("minus", "-1.0e300")):
+        body += f'    printf("{name}=%d\\n", (int)drivespec_to_wire({record}, {text}, &wire));\n'
+    body += '    printf("wire=%lld\\n", (long long)wire);\n'
+    body += '    printf("node=%lu\\n", (unsigned long)drivespec_at_node(UINT32_C(0x180), 127u));\n'
+    body = body.replace("1.0e300 * 1.0e300", "1.0e300")
+    assert result(tmp_path, c, [f"{device.id}_tables.h"], body) == {
+        "nan": 0,
+        "inf": 0,
+        "minus": 0,
+        "wire": 7,
+        "node": 0x180 + 127,
+    }
+
+
+# The panel.
+
+
+def switch_value(group: SwitchGroup, positions: str) -> int | None:
+    if group.weights:
+        low, high = group.valid or (0, sum(group.weights))
+        total = group.sum(positions)
+        return total if low <= total <= high else None
+    text = switch_text(group, positions)
+    return int(text) if text is not None and text.isdigit() else None
+
+
+def switch_text(group: SwitchGroup, positions: str) -> str | None:
+    fitting = [
+        row.value for row in group.rows if all(a in ("x", b) for a, b in zip(row.positions, positions, strict=True))
+    ]
+    return fitting[0] if fitting else None
+
+
+def switch_program(device: Device) -> tuple[str, Values]:
+    body = ""
+    expected: Values = {}
+    for group in device.switches:
+        name, count = snake(device.id, "switch", group.id), len(group.labels)
+        body += (
+            f"    for (uint32_t at = 0u; at < {2 ** (count + 1)}u; at++) {{\n"
+            "        uint32_t value = 0u, back = 0u;\n"
+            f"        const drivespec_switch_row *const row = {name}_row(at);\n"
+            f'        printf("{name} row %lu=%s\\n", (unsigned long)at, row != NULL ? row->text : "-");\n'
+            f"        if ({name}_value(at, &value)) {{\n"
+            f'            printf("{name} value %lu=%lu\\n", (unsigned long)at, (unsigned long)value);\n'
+            f"            if ({name}_position(value, &back)) {{\n"
+            f'                printf("{name} back %lu=%lu\\n", (unsigned long)at, (unsigned long)back);\n'
+            "            }\n"
+            "        }\n"
+            "    }\n"
+            "    {\n"
+            "        uint32_t kept = 42u;\n"
+            f'        printf("{name} absurd=%d\\n", (int){name}_position(UINT32_C(4000000000), &kept) + (int)kept);\n'
+            "    }\n"
+        )
+        expected[f"{name} absurd"] = 42
+        least: dict[int, int] = {}
+        for at in range(2 ** (count + 1)):
+            positions = f"{at:0{count}b}"
+            if len(positions) > count:
+                expected[f"{name} row {at}"] = "-"
+                continue
+            text = switch_text(group, positions)
+            expected[f"{name} row {at}"] = "-" if text is None else int(text) if text.isdigit() else text
+            value = switch_value(group, positions)
+            if value is not None:
+                expected[f"{name} value {at}"] = value
+                expected[f"{name} back {at}"] = least.setdefault(value, at)
+        for bit, label in enumerate(reversed(group.labels)):
+            macro = f"{name.upper()}_{screaming(label)}"
+            body += f'    printf("{macro}=%lu\\n", (unsigned long){macro});\n'
+            expected[macro] = 2**bit
+    return body, expected
+
+
+def literal(pattern: Pattern) -> str:
+    colour = f'"{pattern.colour}"' if pattern.colour else "NULL"
+    period, pause = (int(1000 * (seconds or 0)) for seconds in (pattern.period, pattern.pause))
+    return f"{{ {colour}, {period}u, {pause}u, {LIGHTS.index(pattern.light)}u, {pattern.flashes or 0}u }}"
+
+
+def led_program(device: Device) -> tuple[str, Values]:
+    body = ""
+    expected: Values = {}
+    for table in device.indicators:
+        name = snake(device.id, "led", table.id)
+        for place, row in enumerate(table.rows):
+            patterns = ", ".join(literal(pattern) for pattern in row.patterns)
+            body += f"    {{\n        const drivespec_pattern seen[] = {{ {patterns} }};\n"
+            body += f"        const {name}_row *const row = {name}_find(seen);\n"
+            body += f'        printf("{name} {place}=%s\\n", row != NULL ? row->state : "-");\n    }}\n'
+            expected[f"{name} {place}"] = row.state
+        absent = ", ".join(literal(Pattern(Light.ANY)) for _ in table.leds)
+        body += f"    {{\n        const drivespec_pattern seen[] = {{ {absent} }};\n"
+        body += f'        printf("{name} unknown=%d\\n", (int)({name}_find(seen) == NULL));\n    }}\n'
+        dull = any(all(pattern.light is Light.ANY for pattern in row.patterns) for row in table.rows)
+        expected[f"{name} unknown"] = int(not dull)
+    return body, expected
+
+
+@pytest.mark.parametrize(("compiler", "standard"), COMPILERS)
+def test_switches_and_leds(model: Model, c: Path, tmp_path: Path, compiler: str, standard: str) -> None:
+    devices = [device for device in model.devices if device.switches or device.indicators]
+    assert any(device.switches for device in devices)
+    for device in devices:
+        switches, settings = switch_program(device)
+        leds, states = led_program(device)
+        printed = result(tmp_path, c, [f"{device.id}_panel.h"], switches + leds, compiler, standard)
+        assert_same(printed, settings | states)
+
+
+def test_times_of_leds_that_were_not_measured(model: Model, c: Path, tmp_path: Path) -> None:
+    """A pattern without its times finds a row that has them, and no row of another light."""
+    body, expected = "", {}
+    for device in model.devices:
+        for table in device.indicators:
+            name = snake(device.id, "led", table.id)
+            for place, row in enumerate(table.rows):
+                if all(pattern.period is None and pattern.pause is None for pattern in row.patterns):
+                    continue
+                bare = ", ".join(literal(Pattern(p.light, p.colour, None, p.flashes)) for p in row.patterns)
+                key = f"{device.id} {table.id} {place}"
+                body += f"    {{\n        const drivespec_pattern seen[] = {{ {bare} }};\n"
+                body += f'        printf("{key}=%s\\n", {name}_find(seen)->state);\n    }}\n'
+                shapes = [tuple((p.light, p.flashes) for p in other.patterns) for other in table.rows]
+                expected[key] = table.rows[shapes.index(shapes[place])].state
+    assert expected
+    headers = [f"{device.id}_panel.h" for device in model.devices if device.indicators]
+    assert_same(result(tmp_path, c, headers, body), dict(expected))

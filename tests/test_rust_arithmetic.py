@@ -1,0 +1,290 @@
+"""Arithmetic and look-ups of the Rust crate, against the model."""
+
+import json
+from collections.abc import Iterator
+from dataclasses import replace
+from fractions import Fraction
+from math import floor
+from pathlib import Path
+
+import pytest
+from rust_crate import Cargo, edge_indicators, edge_switches, edge_tables, texts
+
+from generator.emit.rust import TARGET
+from generator.emit.rust.syntax import constant_name, type_name
+from generator.model import Code, Device, Drive, IndicatorTable, Light, Model, Pattern, SwitchGroup
+from generator.naming import safe, snake
+
+
+@pytest.fixture(scope="module")
+def cargo(root: Path) -> Cargo:
+    return Cargo(root)
+
+
+@pytest.fixture(scope="module")
+def crate(cargo: Cargo, model: Model) -> Path:
+    return cargo.place("crate", texts(TARGET.render(model)))
+
+
+@pytest.fixture(scope="module")
+def edge(model: Model) -> Model:
+    device = next(device for device in model.devices if device.indicators and device.switches)
+    changes = {
+        "indicators": edge_indicators(device.indicators[0]),
+        "switches": edge_switches(device.switches[0]),
+        "tables": edge_tables(device.tables[0]),
+    }
+    return replace(model, devices=(replace(device, id="edge", **changes),))  # type: ignore[arg-type]
+
+
+def check(cargo: Cargo, name: str, crate: Path, probes: Iterator[tuple[str, str]]) -> None:
+    expected = dict(probes)
+    assert expected
+    assert cargo.probe(name, crate, ["types::*", "*"], list(expected)) == expected
+
+
+def option(value: object) -> str:
+    return "None" if value is None else f"Some({value})"
+
+
+# Codes.
+
+
+def test_scaling(cargo: Cargo, crate: Path, model: Model) -> None:
+    check(cargo, "scaling", crate, (probe for device in model.devices for probe in scaling_probes(device)))
+
+
+def scaling_probes(device: Device) -> Iterator[tuple[str, str]]:
+    for code in device.codes:
+        found = f"{device.id}::codes::TABLE.get({code.number}).unwrap()"
+        bounds = limits(code)
+        if bounds is None:
+            yield f"{found}.wire(0.0)", "Err(OutOfRange)"
+            continue
+        low, high = bounds
+        factor = code.scaling or 1
+        for raw in {low, high, (low + high) // 2}:
+            yield f"{found}.check({raw}_i64)", f"Ok({raw})"
+            if abs(raw) < 2**53:
+                yield f"{found}.physical({raw}_i64)", repr(raw / factor)
+                yield f"{found}.wire({raw / factor!r})", f"Ok({raw})"
+        for raw in (low - 1, high + 1):
+            if abs(raw) < 2**53:
+                yield f"{found}.check({raw}_i64)", "Err(OutOfRange)"
+                yield f"{found}.wire({raw / factor!r})", "Err(OutOfRange)"
+        for value in ("f64::NAN", "f64::INFINITY", "f64::NEG_INFINITY", "1e300"):
+            yield f"{found}.wire({value})", "Err(OutOfRange)"
+        middle = (low + high) // 2
+        if high - low > 2 and middle < 2**40:
+            for part in (Fraction(3, 10), Fraction(7, 10)):
+                nearest = floor(middle + part + Fraction(1, 2))
+                yield f"{found}.wire({float((middle + part) / factor)!r})", f"Ok({nearest})"
+
+
+def limits(code: Code) -> tuple[int, int] | None:
+    if not code.data_type.is_number:
+        return None
+    low, high = code.data_type.lowest, min(code.data_type.highest, 2**63 - 1)
+    if code.range:
+        factor = code.scaling or 1
+        low, high = max(low, -floor(-code.range.low * factor)), min(high, floor(code.range.high * factor))
+    return low, high
+
+
+def test_index_and_slot(cargo: Cargo, crate: Path, model: Model) -> None:
+    check(cargo, "index", crate, (probe for device in model.devices for probe in index_probes(device)))
+
+
+def index_probes(device: Device) -> Iterator[tuple[str, str]]:
+    record = f"{device.id}::DEVICE"
+    if device.drive:
+        for code in device.codes:
+            yield f"{record}.drive.unwrap().index({code.number})", f"Some({code.index})"
+            yield f"{record}.drive.unwrap().number({code.index})", f"Some({code.number})"
+            yield (
+                f"{record}.slot_of({code.number}).map(|slot| slot.name)",
+                option(json.dumps(code.slot) if code.slot else None),
+            )
+            names = [other.number for other in device.codes if other.name == code.name]
+            quoted = json.dumps(code.name, ensure_ascii=False)
+            yield f"{record}.codes.find({quoted}, None).map(|code| code.number)", f"Some({names[0]})"
+            own = [other.number for other in device.codes if (other.name, other.slot) == (code.name, code.slot)]
+            if code.slot:
+                yield (
+                    f"{record}.codes.find({quoted}, Some({json.dumps(code.slot)})).map(|code| code.number)",
+                    f"Some({own[0]})",
+                )
+        yield f'{record}.codes.find("no such name", None).is_none()', "true"
+        yield f"{record}.drive.unwrap().index({device.drive.index_base + 1})", "None"
+    for position, slot in enumerate(device.slots):
+        for code in device.codes:
+            if code.twin_of == code.number and code.slot:
+                moved = code.number + slot.code_offset
+                yield f"{record}.slots[{position}].number({code.number})", f"Some({moved})"
+        yield f"{record}.slots[{position}].number({slot.last_code - slot.code_offset + 1})", "None"
+        yield f"{record}.slots[{position}].number(0)", "None"
+
+
+# Identifiers and error numbers.
+
+
+def test_identifiers(cargo: Cargo, crate: Path, model: Model) -> None:
+    def probes() -> Iterator[tuple[str, str]]:
+        assert model.cob_ids
+        yield "cob_ids::TABLE.len()", str(len(model.cob_ids))
+        for entry in model.cob_ids:
+            found = f"cob_ids::{constant_name(snake(entry.name))}"
+            for node in (1, 42, 127):
+                yield f"{found}.id.at({node})", str(entry.base + node)
+                yield f"{found}.id.node({entry.base + node})", f"Some({node})"
+            yield f"({found}.id.node({entry.base}), {found}.id.node({entry.base + 128}))", "(None, None)"
+            yield f"{found}.objects.len()", str(len(entry.objects))
+            yield f"{found}.name", json.dumps(entry.name)
+
+    check(cargo, "identifiers", crate, probes())
+
+
+def test_error_numbers(cargo: Cargo, crate: Path, model: Model) -> None:
+    def probes() -> Iterator[tuple[str, str]]:
+        for device in model.devices:
+            if device.drive:
+                for error in device.errors:
+                    if error.kind == "device":
+                        yield from fields(device.drive, error.number)
+        for drive in model.drives:
+            yield from fields(drive, 0xFFFF_FFFF)
+
+    def fields(drive: Drive, number: int) -> Iterator[tuple[str, str]]:
+        made = f"drives::{safe(snake(drive.id), 'rust')}::ErrorNumber({number})"
+        for name, field in drive.error_fields:
+            value, ones = number >> field.low & (1 << (field.high - field.low + 1)) - 1, field.mask >> field.low
+            yield f"{made}.{name}()", str(value)
+            yield f"{made}.with_{name}({ones - value}).0", str(number ^ field.mask)
+
+    check(cargo, "error-numbers", crate, probes())
+
+
+# Switches, LEDs, tables.
+
+
+def test_switches(cargo: Cargo, crate: Path, model: Model) -> None:
+    check(cargo, "switches", crate, (probe for device in model.devices for probe in switch_probes(device)))
+
+
+def test_switches_of_the_edge_cases(cargo: Cargo, edge: Model) -> None:
+    crate = cargo.place("edge-arithmetic", texts(TARGET.render(edge)))
+    check(cargo, "edge-switches", crate, switch_probes(edge.devices[0]))
+
+
+def switch_probes(device: Device) -> Iterator[tuple[str, str]]:
+    for position, group in enumerate(device.switches):
+        found = f"{device.id}::switches::GROUPS[{position}]"
+        values: dict[int, list[int]] = {}
+        for on in range(1 << len(group.labels)):
+            value = set_value(group, on)
+            yield f"{found}.value({on})", option(value)
+            if value is not None:
+                values.setdefault(value, []).append(on)
+        for value, masks in values.items():
+            known = ", ".join(map(str, masks))
+            yield f"[{known}].contains(&{found}.switches({value}).unwrap())", "true"
+        unused = next(value for value in range(10_000) if value not in values)
+        yield f"{found}.switches({unused})", "None"
+
+
+def set_value(group: SwitchGroup, on: int) -> int | None:
+    """Value of switches that are ON, number n by bit n."""
+    positions = "".join("1" if on >> switch & 1 else "0" for switch in range(len(group.labels)))
+    if group.weights:
+        value = group.sum(positions)
+        return value if group.valid is None or group.valid[0] <= value <= group.valid[1] else None
+    rows = [
+        row.value for row in group.rows if all(a in ("x", b) for a, b in zip(row.positions, positions, strict=True))
+    ]
+    return int(rows[0]) if rows and rows[0].isdecimal() else None
+
+
+def test_indicators(cargo: Cargo, crate: Path, model: Model) -> None:
+    check(cargo, "indicators", crate, (probe for device in model.devices for probe in indicator_probes(device)))
+
+
+def indicator_probes(device: Device) -> Iterator[tuple[str, str]]:
+    for position, table in enumerate(device.indicators):
+        found = f"{device.id}::indicators::TABLES[{position}]"
+        for row in table.rows:
+            if all(pattern.light is not Light.ANY for pattern in row.patterns):
+                seen = ", ".join(map(pattern_text, row.patterns))
+                yield f"{found}.state(&[{seen}]).map(|row| row.state)", f"Some({json.dumps(row.state)})"
+        yield f"{found}.state(&[]).is_none()", "true"
+        yield f"{found}.state(&[{unseen(table)}]).is_none()", "true"
+
+
+def unseen(table: IndicatorTable) -> str:
+    return ", ".join("Pattern { flashes: Some(99), ..Pattern::of(Light::Flash) }" for _ in table.leds)
+
+
+def pattern_text(pattern: Pattern) -> str:
+    colour = option(json.dumps(pattern.colour) if pattern.colour else None)
+    period, pause = (option(None if time is None else int(1000 * time)) for time in (pattern.period, pattern.pause))
+    return (
+        f"Pattern {{ light: Light::{pattern.light.value.capitalize()}, colour: {colour}, period: {period}, "
+        f"flashes: {option(pattern.flashes)}, pause: {pause} }}"
+    )
+
+
+def test_indicators_of_the_edge_cases(cargo: Cargo, edge: Model) -> None:
+    off, anything = Pattern(Light.OFF), Pattern(Light.FLICKER)
+    red, green = Pattern(Light.ON, colour="red"), Pattern(Light.ON, colour="green")
+    slow, fast = Pattern(Light.BLINK, period=Fraction(1)), Pattern(Light.BLINK, "green", Fraction(1, 8))
+    three, two = (Pattern(Light.FLASH, None, None, number, Fraction(5, 4)) for number in (3, 2))
+    cases = {
+        (red, off): '"red"',
+        (green, off): None,
+        (red, red): None,
+        (slow, anything): '"slow"',
+        (replace(slow, colour="green"), three): '"slow"',
+        (fast, three): '"fast"',
+        (fast, two): None,
+        (replace(fast, colour=None), three): None,
+        (off, two): '"dark"',
+        (off,): None,
+        (off, off, off): None,
+    }
+    crate = cargo.place("edge-arithmetic", texts(TARGET.render(edge)))
+    found = "edge::indicators::TABLES[0].state(&[{}]).map(|row| row.state)"
+    probes = ((found.format(", ".join(map(pattern_text, seen))), option(state)) for seen, state in cases.items())
+    check(cargo, "edge-indicators", crate, probes)
+
+
+NUMBERS = {
+    ("e94aycca", "nmt-commands"): ("dec", "command"),
+    ("e94aycca", "guarding-status"): ("value", "status"),
+    ("e94aycca", "heartbeat-status"): ("value", "status"),
+    ("e94aycen", "gci-data-types"): ("id", "type"),
+    ("e94aycpm", "dpv1-formats"): ("value", "format"),
+}
+"""Tables of numbers: device and table, columns of the numbers and of the names."""
+
+
+def test_numbers(cargo: Cargo, crate: Path, model: Model, edge: Model) -> None:
+    def probes() -> Iterator[tuple[str, str]]:
+        for (device_id, table_id), columns in NUMBERS.items():
+            device = next(device for device in model.devices if device.id == device_id)
+            table = next(table for table in device.tables if table.id == table_id)
+            places = [next(n for n, known in enumerate(table.columns) if known.id == column) for column in columns]
+            enum = f"{device_id}::numbers::{type_name(table_id)}"
+            yield f"{enum}::ALL.len()", str(len(table.rows))
+            for row in table.rows:
+                number, label = (row[place] for place in places)
+                number = number if isinstance(number, int) else int(number, 0)
+                yield f"{enum}::from_raw({number}).map(|entry| entry.label())", f"Some({json.dumps(label)})"
+
+    check(cargo, "numbers", crate, probes())
+    files = TARGET.render(model)
+    enums = sum(text.text.count("selection! {") for path, text in files.items() if path.endswith("/numbers.rs"))
+    assert enums == len(NUMBERS)
+    text = TARGET.render(edge)["src/edge/numbers.rs"].text
+    assert text.count("selection! {") == 2
+    assert 'XY = 16, "x y";' in text
+    assert "    Hex: u16 {" in text
+    assert "    Wide: u32 {" in text
