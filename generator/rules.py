@@ -75,5 +75,6 @@ RULES: dict[str, str] = {
     "object-value": "Names, defaults and limits of an object can be expressed on the bus.",
     "name-collision": "No two facts get the same name in a generated file.",
     "error-overlap": "An error number stands in one entry of its kind.",
+    "telegram-field": "Every language can hold the numbers of a telegram and find its lengths.",
     "not-ascii": "Text for a target that is ASCII has ASCII characters.",
 }

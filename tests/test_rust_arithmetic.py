@@ -226,8 +226,9 @@ def unseen(table: IndicatorTable) -> str:
 def pattern_text(pattern: Pattern) -> str:
     colour = option(json.dumps(pattern.colour) if pattern.colour else None)
     period, pause = (option(None if time is None else int(1000 * time)) for time in (pattern.period, pattern.pause))
+    variant = pattern.light.value.title().replace("_", "")
     return (
-        f"Pattern {{ light: Light::{pattern.light.value.capitalize()}, colour: {colour}, period: {period}, "
+        f"Pattern {{ light: Light::{variant}, colour: {colour}, period: {period}, "
         f"flashes: {option(pattern.flashes)}, pause: {pause} }}"
     )
 

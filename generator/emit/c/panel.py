@@ -11,7 +11,7 @@ from generator.emit.c.writer import Constant, Names, Section, Writer
 from generator.model import Device, IndicatorTable, Light, Manual, Model, Pattern, SwitchGroup, SwitchRow, Where
 from generator.naming import snake
 
-LIGHTS = (Light.ANY, Light.OFF, Light.ON, Light.FLICKER, Light.BLINK, Light.FLASH)
+LIGHTS = (Light.ANY, Light.OFF, Light.ON, Light.FLICKER, Light.BLINK, Light.FLASH, Light.ON_OR_FLICKER)
 """What an LED does by its value in the records; part of the interface, so append only."""
 
 _EITHER = "x"

@@ -33,6 +33,7 @@ _LIGHTS = {
     Light.OFF: "Off.",
     Light.ON: "On.",
     Light.FLICKER: "Flickering.",
+    Light.ON_OR_FLICKER: "Lit or flickering; the manual draws no line between the two.",
     Light.BLINK: "On and off for the same time.",
     Light.FLASH: "Flashes and a pause.",
 }
