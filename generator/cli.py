@@ -113,7 +113,7 @@ def _build(spec: Path, out: Path, style: str) -> int:
     try:
         files = render(compile_model(spec, _label(spec)))
     except DiagnosticsError as error:
-        return _show(error, spec, style)
+        return _show(error, style)
     changed = write(out, files, sources)
     (out / _STATE).write_text(json.dumps(state), encoding="ascii")
     print(f"{out.name}: {len(files)} artifacts, {len(changed)} files changed")
@@ -144,7 +144,7 @@ def _report(spec: Path, style: str, *, census: bool) -> int:
     try:
         model = compile_model(spec, _label(spec))
     except DiagnosticsError as error:
-        return _show(error, spec, style)
+        return _show(error, style)
     if census:
         from generator.census import lines
 
@@ -176,7 +176,7 @@ def _dcf(options: argparse.Namespace) -> int:
         with reported():
             contents = {name: output.data() for name, output in files(model, request).items()}
     except DiagnosticsError as error:
-        return _show(error, options.spec, options.format)
+        return _show(error, options.format)
     except mistakes.MistakesError as error:
         if options.format == "json":
             sys.stdout.write(mistakes.as_json(error.mistakes))
@@ -193,19 +193,14 @@ def _dcf(options: argparse.Namespace) -> int:
     return 0
 
 
-def _show(error: Exception, spec: Path, style: str) -> int:
+def _show(error: Exception, style: str) -> int:
     from generator.diagnostics import DiagnosticsError, SourceText, as_json, as_text
 
     assert isinstance(error, DiagnosticsError)
     if style == "json":
         sys.stdout.write(as_json(error.diagnostics))
         return 1
-    root = spec.resolve()
-    for _ in Path(_label(spec)).parts:
-        root = root.parent
-    sys.stderr.write(
-        as_text(error.diagnostics, SourceText(root if not Path(_label(spec)).is_absolute() else Path("/")))
-    )
+    sys.stderr.write(as_text(error.diagnostics, SourceText(Path.cwd())))
     count = len(error.diagnostics)
     sys.stderr.write(f"\n{count} problem{'s' if count > 1 else ''}; nothing was written\n")
     return 1
