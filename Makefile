@@ -37,6 +37,8 @@ census: $(VENV)/ready ## print every fact, one a line, and the coverage of each 
 test: .build/generated $(VENV)/ready-for-tests lint ## run the whole test suite
 	@command -v cc >/dev/null || { echo "make test: install a C compiler (cc is not on the PATH)" >&2; exit 1; }
 	@command -v c++ >/dev/null || { echo "make test: install a C++ compiler (c++ is not on the PATH)" >&2; exit 1; }
+	@command -v cmake >/dev/null || { echo "make test: install CMake (cmake is not on the PATH)" >&2; exit 1; }
+	@command -v pkg-config >/dev/null || { echo "make test: install pkg-config (it is not on the PATH)" >&2; exit 1; }
 	@command -v cargo >/dev/null || { echo "make test: install Rust (cargo is not on the PATH)" >&2; exit 1; }
 	$(RUN) -m pytest
 

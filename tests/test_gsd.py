@@ -236,6 +236,14 @@ def test_modules_are_those_of_the_manual(cases: list[Case]) -> None:
         assert len(case.gsd.modules) == len(expected) == 3 * NAMED_MODULES + 1
 
 
+def test_references_stay_what_projects_know(cases: list[Case]) -> None:
+    """Projects of users hold the references; a change is a breaking change."""
+    for case in cases:
+        runs = {"drivecom-pcd": 100, "pcd-consistent": 200, "pcd": 300}
+        for module in case.gsd.modules:
+            assert module.reference == (runs[module.family] + module.words if module.family in runs else 401)
+
+
 # Languages
 
 

@@ -2,6 +2,7 @@
 
 import dataclasses
 import re
+import shlex
 from collections.abc import Callable, Iterator
 from fractions import Fraction
 from itertools import pairwise
@@ -12,6 +13,9 @@ from xml.etree.ElementTree import Element
 import html5lib
 import pytest
 
+from generator import dcf
+from generator.emit import eds, gsd, xdd
+from generator.emit.canopen import ObjectDictionary, object_dictionaries
 from generator.emit.html import TARGET
 from generator.emit.html.links import Links
 from generator.model import (
@@ -46,6 +50,7 @@ from generator.model import (
     SwitchRow,
     Values,
 )
+from generator.model.gsd import Keyword
 
 HEADINGS = {f"h{level}": level for level in range(1, 7)}
 NOTHING = "–"
@@ -231,8 +236,14 @@ def ledgers(model: Model, pages: dict[str, Page]) -> list[tuple[Device, Page]]:
     return [(device, pages[f"{device.id}-errata.html"]) for device in model.devices]
 
 
+def pages_of(device: Device) -> list[str]:
+    """The pages of a device in the order of their navigation."""
+    files = ["-files"] if device.canopen or device.gsd else []
+    return [f"{device.id}{part}.html" for part in ("", "-tables", "-errata", *files)]
+
+
 def test_pages_of_devices_and_nothing_else(model: Model, outputs: dict[str, str], generated: Path) -> None:
-    names = {f"{device.id}{part}.html" for device in model.devices for part in ("", "-tables", "-errata")}
+    names = {name for device in model.devices for name in pages_of(device)}
     assert set(outputs) == {"index.html", "coverage.html", "style.css", *names}
     for path, source in outputs.items():
         assert (generated / "html" / path).read_bytes().decode() == source
@@ -245,10 +256,11 @@ def test_ids_are_unique(pages: dict[str, Page]) -> None:
 
 
 def broken_links(pages: dict[str, Page]) -> Iterator[str]:
+    """Links between pages that lead nowhere; those to other artifacts are left to a test of their own."""
     for path, page in pages.items():
         for element in page.root.iter("a"):
             href = element.get("href") or ""
-            if href.startswith(("https://", "http://")):
+            if href.startswith(("https://", "http://", "../")):
                 continue
             target, _, fragment = href.partition("#")
             if not href or (target and target not in pages) or (fragment and fragment not in pages[target or path].ids):
@@ -305,8 +317,9 @@ def test_pages_say_what_they_are_made_from(
     devices: list[tuple[Device, Page]],
     panels: list[tuple[Device, Page]],
     ledgers: list[tuple[Device, Page]],
+    folders: list[tuple[Device, Page]],
 ) -> None:
-    for device, page in (*devices, *panels, *ledgers):
+    for device, page in (*devices, *panels, *ledgers, *folders):
         manual = device.manual
         footer = text(page.root.find("body/footer"))
         for shown in (
@@ -734,7 +747,13 @@ def test_first_page_lists_devices_and_sources(model: Model, pages: dict[str, Pag
     page = pages["index.html"]
     listed = table(page.root, "devices")
     assert [[a.get("href") for cell in row.values() for a in cell.iter("a")] for row in listed] == [
-        [f"{d.id}.html", f"{d.id}-tables.html", f"coverage.html#manual-{d.manual.id}", f"{d.id}-errata.html"]
+        [
+            f"{d.id}.html",
+            f"{d.id}-tables.html",
+            f"coverage.html#manual-{d.manual.id}",
+            f"{d.id}-errata.html",
+            *pages_of(d)[3:],
+        ]
         for d in model.devices
     ]
     rows = [(main_text(row["Device"]), *map(text, list(row.values())[1:])) for row in listed]
@@ -746,6 +765,7 @@ def test_first_page_lists_devices_and_sources(model: Model, pages: dict[str, Pag
             d.manual.id,
             ", ".join(filter(None, (d.manual.edition, d.manual.date))),
             *(str(len(things)) for things in (d.codes, d.objects, d.errors, d.errata)),
+            str(len(linked_files(d))) if linked_files(d) else NOTHING,
         )
         for d in model.devices
     ]
@@ -810,7 +830,7 @@ def test_coverage_counts_chapters_and_lists_what_is_lost(model: Model, pages: di
 
 def test_pages_of_a_device_lead_to_each_other(model: Model, pages: dict[str, Page]) -> None:
     for device in model.devices:
-        own = [f"{device.id}{part}.html" for part in ("", "-tables", "-errata")]
+        own = pages_of(device)
         for path in own:
             listed = cast(Element, pages[path].root.find("body/nav/ul"))
             expected = [name for name in own if name != path] + [f"coverage.html#manual-{device.manual.id}"]
@@ -1246,6 +1266,171 @@ def test_telegrams_of_one_exchange_lead_to_each_other(panels: list[tuple[Device,
             assert links == {f"#telegram-{name}" for name in others if name != example.id}
 
 
+@pytest.fixture(scope="module")
+def folders(model: Model, pages: dict[str, Page]) -> list[tuple[Device, Page]]:
+    return [(device, pages[f"{device.id}-files.html"]) for device in model.devices if device.canopen or device.gsd]
+
+
+def linked_files(device: Device) -> list[str]:
+    """Addresses of the files of a device by the functions that name them."""
+    canopen = [
+        f"../{kind}/{name}"
+        for found in object_dictionaries(device)
+        for kind, name in (("eds", eds.file_name(found)), ("xdd", xdd.file_name(found)))
+    ]
+    return canopen + ([f"../gsd/{name}" for name, _ in gsd.file_names(device.gsd)] if device.gsd else [])
+
+
+def part(page: Page, name: str) -> Element:
+    """The section below the heading with that id."""
+    section: Element = page.parents[page.element(name)]
+    return section
+
+
+def test_every_file_for_bus_masters_is_linked_and_exists(
+    model: Model, pages: dict[str, Page], folders: list[tuple[Device, Page]], generated: Path
+) -> None:
+    shown = [a.get("href") or "" for page in pages.values() for a in page.root.iter("a")]
+    outward = [href for href in shown if href.startswith("../")]
+    assert all((generated / "html" / href).is_file() for href in outward)
+    made = {f"../{kind}/{path.name}" for kind in ("eds", "xdd", "gsd") for path in (generated / kind).iterdir()}
+    assert set(outward) == made and len(outward) == len(made) > 10
+    for device, page in folders:
+        links = [a for a in page.root.iter("a") if (a.get("href") or "").startswith("../")]
+        assert [a.get("href") for a in links] == linked_files(device)
+        assert all((a.get("href") or "").endswith(f"/{text(a)}") for a in links)
+        notes = text(part(page, "canopen-import")) if device.canopen else ""
+        assert not notes or eds.file_name(object_dictionaries(device)[0]) in notes
+
+
+def dictionaries(folders: list[tuple[Device, Page]]) -> Iterator[tuple[tuple[ObjectDictionary, ...], Page]]:
+    found = [(object_dictionaries(device), page) for device, page in folders if device.canopen]
+    assert found
+    yield from found
+
+
+def test_canopen_files_have_their_identity_and_counts(folders: list[tuple[Device, Page]], generated: Path) -> None:
+    for all_of, page in dictionaries(folders):
+        identities = table(part(page, "canopen"), "files")
+        counts = table(part(page, "canopen-contents"), "contents")
+        for one, identity, count in zip(all_of, identities, counts, strict=True):
+            label = text(identity["For"])
+            assert label == text(count["For"])
+            assert all(name in label for name in (one.slot or "", one.product.label))
+            source = (generated / "eds" / text(identity["EDS"])).read_text("ascii")
+            for key, column in (
+                ("VendorNumber", "Vendor"),
+                ("ProductNumber", "Product"),
+                ("RevisionNumber", "Revision"),
+            ):
+                shown = identity[f"{column} number"]
+                assert f"\n{key}={main_text(shown)}\n" in source
+                assert text(shown).endswith("assumed") == (key in one.product.unknown)
+            lists_of = re.findall(r"Objects\]\nSupportedObjects=(\d+)", source)
+            assert [text(count[name]) for name in ("Mandatory", "Optional", "Manufacturer")] == lists_of
+            assert f"\nNrOfRXPDO={text(count['RPDOs'])}\nNrOfTXPDO={text(count['TPDOs'])}\n" in source
+            assert int(text(count["Values"])) == len(re.findall("^AccessType=", source, re.M))
+            assert int(text(count["Mappable"])) == len(re.findall("^PDOMapping=1$", source, re.M))
+            assert int(text(count["By node-ID"])) == len(re.findall(r"^DefaultValue=\$NODEID", source, re.M))
+
+
+def test_canopen_files_say_what_is_assumed_and_corrected(folders: list[tuple[Device, Page]]) -> None:
+    for all_of, page in dictionaries(folders):
+        said = [text(item) for item in part(page, "canopen-assumed").iter("li")]
+        assert len(said) == len(set(said))
+        rows = table(part(page, "canopen-corrected"), "corrected")
+        by_id = {text(row["Erratum"].find("a")): row for row in rows}
+        assert len(by_id) == len(rows)
+        for one in all_of:
+            for sentence in (*eds.assumed(one), *eds.left_out(one)):
+                assert any(shown.endswith(sentence) for shown in said)
+            for erratum, concerned in eds.corrected(one):
+                row = by_id[erratum.id]
+                assert concerned in text(row["Concerns"]).split("; ")
+                assert text(row["Used"]) == erratum.used_text
+                assert text(row["Printed"]) == eds.printed(erratum)
+                link = cast(Element, row["Erratum"].find("a"))
+                assert link.get("href") == f"{one.device.id}-errata.html#erratum-{erratum.id}"
+                notes = [text(note) for note in row["Erratum"].findall("small")]
+                assert notes == (["slip of the text dump alone"] if erratum.origin == "dump" else [])
+        assert by_id.keys() == {erratum.id for one in all_of for erratum, _ in eds.corrected(one)}
+
+
+def test_commands_write_the_dcf_of_each_file(model: Model, folders: list[tuple[Device, Page]]) -> None:
+    for all_of, page in dictionaries(folders):
+        shown = [text(item) for lst in with_class(page.root, "commands") for item in lst]
+        for one, command in zip(all_of, shown, strict=True):
+            words = shlex.split(command)
+            assert words[:4] == ["python", "-m", "generator", "dcf"]
+            options = dict(zip(words[4::2], words[5::2], strict=True))
+            assert options.pop("--node") == "NODE"
+            request = dcf.Request(
+                device=options.pop("--device"),
+                slot=options.pop("--slot", None),
+                product=options.pop("--product", None),
+                node="7",
+                bit_rate=str(one.facts.baud_rates[0]),
+                settings=(),
+            )
+            assert not options
+            assert f"{eds.file_stem(one)}_node7.dcf" in dcf.files(model, request)
+
+
+GSD_TABLES = {origin: origin.value for origin in Origin}
+
+
+def test_profibus_files_say_where_each_keyword_is_from(folders: list[tuple[Device, Page]]) -> None:
+    found = [(device, device.gsd, page) for device, page in folders if device.gsd]
+    assert found
+    for device, facts_of, page in found:
+        for keyword in facts_of.keywords:
+            printed = keyword.source.origin is Origin.MANUAL
+            where = part(page, "profibus-contents" if printed else "profibus-assumed")
+            rows = {text(row["Keyword"]): row for row in table(where, GSD_TABLES[keyword.source.origin])}
+            row = rows[keyword.name]
+            assert text(row["Value"]) == gsd.value_text(keyword, "en")
+            assert text(row["Reason or remark"]) == (" ".join(keyword.source.note.split()) or NOTHING)
+            cite = keyword.source.cite
+            assert text(row["Source"]) == (cite_text(cite) if cite else NOTHING)
+        section = text(part(page, "profibus"))
+        others = [facts_of.max_tsdr, facts_of.parameters_source, *(module.source for module in facts_of.modules)]
+        others += [area.source for area in facts_of.diagnosis.areas] if facts_of.diagnosis else []
+        assert all(" ".join(source.note.split()) in section for source in others)
+        assert ", ".join(str(rate.max_tsdr) for rate in facts_of.bit_rates) in section
+        sources = [keyword.source for keyword in facts_of.keywords] + others
+        rows_of = table(part(page, "profibus-corrected"), "corrected")
+        assert {text(row["Erratum"].find("a")) for row in rows_of} == {e for s in sources for e in s.errata}
+        assert rows_of
+        errata = {erratum.id: erratum for erratum in device.errata}
+        for row in rows_of:
+            erratum = errata[text(row["Erratum"].find("a"))]
+            assert (text(row["Printed"]), text(row["Used"])) == (eds.printed(erratum), erratum.used_text)
+
+
+def test_profibus_files_have_their_identity_and_counts(folders: list[tuple[Device, Page]]) -> None:
+    for _, facts_of, page in ((device, device.gsd, page) for device, page in folders if device.gsd):
+        contents = part(page, "profibus-contents")
+        shown = facts(contents)
+        assert int(text(shown["Ident number"]), 16) == facts_of.number("Ident_Number")
+        assert text(shown["Keywords"]) == str(len(facts_of.keywords))
+        assert text(shown["Modules"]) == str(len(facts_of.modules))
+        assert text(shown["Bit rates"]).startswith(", ".join(rate.name for rate in facts_of.bit_rates) + ";")
+        families = [
+            m for n, m in enumerate(facts_of.modules) if m.family not in {x.family for x in facts_of.modules[:n]}
+        ]
+        for family, row in zip(families, table(contents, "kinds"), strict=True):
+            members = [module for module in facts_of.modules if module.family == family.family]
+            assert text(row["Count"]) == str(len(members))
+            low, high = ends(text(row["Bytes in each direction"]))
+            assert {int(low), int(high)} == {f(m.length for m in members) for f in (min, max)}
+            assert text(row["Modules"]).startswith(members[0].name.english)
+        if facts_of.diagnosis:
+            areas = [(f"{a.first} … {a.last} {a.id}", str(len(a.texts))) for a in facts_of.diagnosis.areas]
+            rows = table(contents, "diagnosis")
+            assert [(text(r["Bits of the status block"]), text(r["Texts"])) for r in rows] == areas
+            assert text(shown["Diagnosis texts"]) == str(sum(int(count) for _, count in areas))
+
+
 def test_the_largest_page_stays_light(outputs: dict[str, str]) -> None:
     assert max(len(source.encode()) for source in outputs.values()) < 500_000
 
@@ -1254,12 +1439,13 @@ POISON = "<script>alert('1')</script>&amp;\"'"
 KEPT = {
     Chapter: {"status"},
     Device: {"id"},
-    DictionaryObject: {"kind"},
+    DictionaryObject: {"kind", "object_type"},
     ErrorEntry: {"kind"},
     ErrorRef: {"kind"},
     Erratum: {"kind", "origin", "rule", "place"},
     PrintedIndex: {"place"},
     PrintedNumber: {"place"},
+    Keyword: {"name"},
     Manual: {"kind"},
     SwitchRow: {"positions", "value"},
 }
@@ -1324,6 +1510,19 @@ def test_text_of_the_model_is_escaped(model: Model) -> None:
     for path, found in expected.items():
         whole = text(dirty_pages[path].root.find("body"))
         assert not [fact for fact in found if fact + POISON not in whole]
+
+
+def test_text_of_gsd_files_is_escaped(model: Model) -> None:
+    found = next(device for device in model.devices if device.gsd)
+    cut = dataclasses.replace(found, codes=(), objects=(), errors=(), tables=(), examples=(), indicators=(), layouts=())
+    clean = dataclasses.replace(model, devices=(cut,))
+    path = f"{found.id}-files.html"
+    before, after = (Page(TARGET.render(each)[path].text) for each in (clean, poisoned(clean)))
+    assert "<script" not in after.source
+    assert [element.tag for element in after.elements] == [element.tag for element in before.elements]
+    section = text(part(after, "profibus"))
+    notes = [keyword.source.note for keyword in cut.gsd.keywords if keyword.source.note] if cut.gsd else []
+    assert notes and all(note + POISON in section for note in notes)
 
 
 def test_links_hold_in_an_excerpt(model: Model) -> None:

@@ -4,7 +4,7 @@
 # - E94AYCPM communication module (PROFIBUS®), Communication Manual, edition 12.0
 # - Communication Manual Servo Drives 930, 931E/K, CANopen, edition 4.1
 # This is not a product of Lenze.
-"""Codes, objects and error numbers of industrial drives and fieldbus modules.
+"""Codes, objects, error numbers and telegrams of industrial drives and fieldbus modules.
 
 Every device is a module of this package; ``DEVICES`` lists them and ``load`` imports one by its name. Importing the
 package imports none of them, and importing one does not import the others.
@@ -56,15 +56,67 @@ __all__ = (
     "Slot",
     "SubCode",
     "SubIndex",
+    "DATA_TYPES",
+    "Column",
+    "IndicatorRow",
+    "IndicatorTable",
+    "Led",
+    "Pattern",
+    "SwitchGroup",
+    "SwitchRow",
+    "Table",
+    "DecodeError",
+    "EncodeError",
+    "Telegram",
+    "TelegramError",
 )
 
-_ENUMS = ("Flags", "Selection")
+_PLACES = {
+    "Flags": "_enums",
+    "Selection": "_enums",
+    "Access": "_records",
+    "BitField": "_records",
+    "CanOpen": "_records",
+    "Cite": "_records",
+    "Code": "_records",
+    "CodeRef": "_records",
+    "DataType": "_records",
+    "Device": "_records",
+    "DictionaryObject": "_records",
+    "Drive": "_records",
+    "Error": "_records",
+    "Erratum": "_records",
+    "ErratumPlace": "_records",
+    "Manual": "_records",
+    "NodeRelative": "_records",
+    "ObjectRef": "_records",
+    "Range": "_records",
+    "Slot": "_records",
+    "SubCode": "_records",
+    "SubIndex": "_records",
+    "DATA_TYPES": "_records",
+    "Column": "_panels",
+    "IndicatorRow": "_panels",
+    "IndicatorTable": "_panels",
+    "Led": "_panels",
+    "Pattern": "_panels",
+    "SwitchGroup": "_panels",
+    "SwitchRow": "_panels",
+    "Table": "_panels",
+    "DecodeError": "_telegram",
+    "EncodeError": "_telegram",
+    "Telegram": "_telegram",
+    "TelegramError": "_telegram",
+}
 
 TYPE_CHECKING = False  # type checkers take it for True; it saves the time that importing typing costs
 if TYPE_CHECKING:
     from types import ModuleType
 
-    from drivespec_devices._enums import Flags as Flags, Selection as Selection
+    from drivespec_devices._enums import (
+        Flags as Flags,
+        Selection as Selection,
+    )
     from drivespec_devices._records import (
         Access as Access,
         BitField as BitField,
@@ -86,17 +138,33 @@ if TYPE_CHECKING:
         Slot as Slot,
         SubCode as SubCode,
         SubIndex as SubIndex,
+        DATA_TYPES as DATA_TYPES,
+    )
+    from drivespec_devices._panels import (
+        Column as Column,
+        IndicatorRow as IndicatorRow,
+        IndicatorTable as IndicatorTable,
+        Led as Led,
+        Pattern as Pattern,
+        SwitchGroup as SwitchGroup,
+        SwitchRow as SwitchRow,
+        Table as Table,
+    )
+    from drivespec_devices._telegram import (
+        DecodeError as DecodeError,
+        EncodeError as EncodeError,
+        Telegram as Telegram,
+        TelegramError as TelegramError,
     )
 else:
 
     def __getattr__(name):
         """Import the records or the enums when one of them is first used."""
-        if name not in __all__:
+        if name not in _PLACES:
             raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
         from importlib import import_module
 
-        module = import_module(f"drivespec_devices.{'_enums' if name in _ENUMS else '_records'}")
-        return globals().setdefault(name, getattr(module, name))
+        return globals().setdefault(name, getattr(import_module(f"drivespec_devices.{_PLACES[name]}"), name))
 
     def __dir__():
         """Names that the package offers, whether used yet or not."""

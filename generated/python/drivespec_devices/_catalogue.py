@@ -31,6 +31,8 @@ class Catalogue:
         self._rows: Any = import_module(f"drivespec_devices._{device}_rows")
         self._codes: dict[int, records.Code] = {}
         self._objects: dict[int, records.DictionaryObject] = {}
+        self._codes_at: dict[tuple[int, int, str | None], tuple[records.CodeRef, ...]] = {}
+        self._known_errors: dict[str, dict[int, records.Error]] = {}
         self._numbers_by_index: dict[int, int] = {row[_INDEX]: number for number, row in self._rows.CODES.items()}
         self._twins: dict[tuple[int, str | None], int] = {(row[_TWIN_OF], row[_SLOT]): number for number, row in self._rows.CODES.items()}
         self._slots = tuple(row[0] for row in self._rows.DEVICE[_SLOTS])
@@ -53,6 +55,8 @@ class Catalogue:
             return self._errors
         if name == "ERRATA":
             return {row[0]: _erratum(row) for row in self._rows.ERRATA}
+        if name in ("INDICATORS", "SWITCHES", "TABLES"):
+            return self._panels(name)
         if name == "DEVICE":
             return _device(self._device, self._rows.DEVICE)
         raise AttributeError(f"module 'drivespec_devices.{self._device}' has no attribute {name!r}")
@@ -88,12 +92,20 @@ class Catalogue:
             raise LookupError(f"{self._device} has several codes {name!r}: {designations}")
         return self.code(found[0], slot)
 
-    def code_index(self, number: int) -> int:
+    def code_index(self, number: int, slot: str | None = None) -> int:
         """Index under which the bus reaches a code of the drive, whether the manual lists it or not.
+
+        With ``slot`` the number of a code of the first slot stands for its twin in that slot.
 
         Raises:
             ValueError: No code has that number.
+            LookupError: The device has no such slot.
         """
+        if slot is not None:
+            self._check_slot(slot)
+            rows = self._rows.DEVICE[_SLOTS]
+            offset = next(row[_OFFSET] for row in rows if row[0] == slot)
+            number += offset if rows[0][_FIRST] <= number <= rows[0][_LAST] else 0
         if not 0 <= number <= self._rows.INDEX_BASE:
             raise ValueError(f"{number} is not the number of a code")
         index: int = self._rows.INDEX_BASE - number
@@ -118,6 +130,9 @@ class Catalogue:
         Raises:
             LookupError: The device has no such slot.
         """
+        known = self._codes_at.get((index, subindex, slot))
+        if known is not None:
+            return known
         found = []
         number = self._numbers_by_index.get(index)
         if number is not None:
@@ -131,7 +146,10 @@ class Catalogue:
         if slot is not None:
             self._check_slot(slot)
             found = [ref for ref in found if self._slot_of(ref.number) in (None, slot)]
-        return tuple(dict.fromkeys(found))
+        codes = tuple(dict.fromkeys(found))
+        if codes:
+            self._codes_at[index, subindex, slot] = codes
+        return codes
 
     def object_at(self, index: int) -> records.DictionaryObject:
         """The object of that index; of PROFIdrive the parameter of that number.
@@ -150,14 +168,17 @@ class Catalogue:
     def error(self, number: int, kind: str = "device") -> records.Error:
         """The one entry of that kind that stands for an error number; of a run every number.
 
-        The response field of a device's error number does not matter.
+        The fields response and instance of a device's error number do not matter.
 
         Raises:
             LookupError: The device has no such error, or several (``errors_at`` gives them all).
         """
-        found = self.errors_at(number, kind)
+        try:
+            return self._known_errors[kind][number]
+        except KeyError:
+            found = self.errors_at(number, kind)
         if len(found) == 1:
-            return found[0]
+            return self._known_errors.setdefault(kind, {}).setdefault(number, found[0])
         if found:
             raise LookupError(f"{self._device} has {len(found)} entries for {kind} error {number:#x}")
         raise LookupError(f"{self._device} has no {kind} error {number:#x}")
@@ -168,8 +189,37 @@ class Catalogue:
         found = (*self._single_errors.get((kind, number), ()), *runs)
         if found or kind != "device":
             return found
-        plain = number & ~self._rows.RESPONSE_MASK
+        plain = number & ~self._rows.IGNORED_MASK
         return self.errors_at(plain, kind) if plain != number else ()
+
+    def error_parts(self, number: int) -> dict[str, int]:
+        """Number in each field of a device's error number, by the name of the field.
+
+        Raises:
+            ValueError: The number has bits outside the fields.
+        """
+        return self._drive.error_parts(number)
+
+    def error_number(self, **parts: int) -> int:
+        """Error number that has the numbers in its fields, and 0 in those that are left out.
+
+        Raises:
+            LookupError: There is no such field.
+            ValueError: A number does not fit into its field.
+        """
+        return self._drive.error_number(parts)
+
+    @cached_property
+    def _drive(self) -> records.Drive:
+        return _drive(self._rows.DEVICE[_DRIVE])
+
+    def _panels(self, name: str) -> dict[str, Any]:
+        """LEDs, switches or printed tables by their id."""
+        from drivespec_devices import _panels as panels
+
+        rows = getattr(import_module(f"drivespec_devices._{self._device}_tables"), name)
+        make = {"INDICATORS": _indicators, "SWITCHES": _switches, "TABLES": _table}[name]
+        return {row[0]: make(panels, *row) for row in rows}
 
     def _code_row(self, number: int) -> Any:
         row = self._rows.CODES.get(number)
@@ -238,9 +288,10 @@ class Catalogue:
 
 
 _NAME, _SLOT, _TWIN_OF, _INDEX = range(4)  # places in a row of a code
-_SLOTS = 9  # place in the row of the device
+_DRIVE, _SLOTS = 8, 9  # places in the row of the device
+_FIRST, _LAST, _OFFSET = 1, 2, 3  # places in the row of a slot
 _FUNCTIONS = frozenset(
-    ("code", "code_by_name", "code_index", "index_code", "codes_at", "object_at", "error", "errors_at")
+    ("code", "code_by_name", "code_index", "index_code", "codes_at", "object_at", "error", "errors_at", "error_parts", "error_number")
 )
 
 
@@ -414,6 +465,30 @@ def _error(row: Any) -> records.Error:
         records.Cite(*cite),
         errata,
     )
+
+
+def _indicators(panels: Any, id_: str, name: str, leds: Any, rows: Any, cite: Any, errata: Any) -> Any:
+    states = tuple(
+        panels.IndicatorRow(tuple(_pattern(panels, *each) for each in patterns), state, meaning, origin, _cite(place))
+        for patterns, state, meaning, origin, place in rows
+    )
+    return panels.IndicatorTable(id_, name, tuple(panels.Led(*led) for led in leds), states, _cite(cite), errata)
+
+
+def _pattern(panels: Any, light: str, colour: Any, period: Any, flashes: Any, pause: Any) -> Any:
+    return panels.Pattern(light, colour, _bound(period), flashes, _bound(pause))
+
+
+def _switches(panels: Any, *row: Any) -> Any:
+    *facts, sets, rows, notes, origin, cite, errata = row
+    codes = tuple(records.CodeRef(*ref) for ref in sets)
+    printed = tuple(panels.SwitchRow(*each) for each in rows)
+    return panels.SwitchGroup(*facts, codes, printed, notes, origin, _cite(cite), errata)
+
+
+def _table(panels: Any, *row: Any) -> Any:
+    id_, kind, name, columns, rows, notes, origin, cite, errata = row
+    return panels.Table(id_, kind, name, tuple(panels.Column(*c) for c in columns), rows, notes, origin, _cite(cite), errata)
 
 
 def _erratum(row: Any) -> records.Erratum:

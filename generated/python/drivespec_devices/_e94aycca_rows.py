@@ -3,7 +3,7 @@
 """Rows of the records of e94aycca, in the order that _catalogue.py reads them."""
 
 INDEX_BASE = 24575
-RESPONSE_MASK = 0xE0000000
+IGNORED_MASK = 0xFC000000
 
 DEVICE = (
     "E94AYCCA CANopen communication module", "Lenze", "E94AYCCA", "CANopen", "VA", "01.00",
@@ -4377,6 +4377,93 @@ SELECTIONS: dict[str, tuple[object, ...]] = {
         (
             (0, "CHANGE_FROM_OPERATIONAL_TO_PRE_OPERATIONAL", 'Change from "Operational" to "Pre-operational"'),
             (1, "NO_STATE_CHANGE", "No state change"), (2, "CHANGE_TO_STOPPED", 'Change to "Stopped"'),
+        ),
+    ),
+    "SdoCommand": (
+        "Command: command (Parameter data telegram). EDS94AYCCA-EN-5.0, 9.2 p. 63.",
+        (
+            (35, "WRITE_REQUEST_4_BYTES", "Write request (4 bytes)"),
+            (43, "WRITE_REQUEST_2_BYTES", "Write request (2 bytes)"),
+            (47, "WRITE_REQUEST_1_BYTE", "Write request (1 byte)"),
+            (33, "WRITE_REQUEST_BLOCK", "Write request (block)"), (96, "WRITE_RESPONSE", "Write response"),
+            (64, "READ_REQUEST", "Read request"), (67, "READ_RESPONSE_4_BYTES", "Read response (4 bytes)"),
+            (75, "READ_RESPONSE_2_BYTES", "Read response (2 bytes)"),
+            (79, "READ_RESPONSE_1_BYTE", "Read response (1 byte)"),
+            (65, "READ_RESPONSE_BLOCK", "Read response (block)"),
+        ),
+    ),
+    "SdoCommandN": (
+        "Command: command.n (Parameter data telegram). EDS94AYCCA-EN-5.0, 9.2 p. 63.",
+        (
+            (0, "N4_BYTES", "4 bytes"), (1, "N3_BYTES", "3 bytes"), (2, "N2_BYTES", "2 bytes"),
+            (3, "N1_BYTES", "1 bytes"),
+        ),
+    ),
+    "SdoCommandCs": (
+        "Command: command.cs (Parameter data telegram). EDS94AYCCA-EN-5.0, 9.2 p. 63.",
+        (
+            (1, "WRITE_REQUEST", "Write request"),
+            (2, "READ_REQUEST_OR_READ_RESPONSE", "Read request or read response"),
+            (3, "WRITE_RESPONSE", "Write response"),
+        ),
+    ),
+    "SdoSegmentRequestCommand": (
+        "Command: command (Read segment request). EDS94AYCCA-EN-5.0, 9.3.3 p. 72.",
+        (
+            (96, "READ_SEGMENT_REQUEST_TOGGLE_BIT_0", "Read Segment Request, toggle bit 0"),
+            (112, "READ_SEGMENT_REQUEST_TOGGLE_BIT_1", "Read Segment Request, toggle bit 1"),
+        ),
+    ),
+    "SdoSegmentResponseCommandC": (
+        "Command: command.c (Read segment response). EDS94AYCCA-EN-5.0, 9.3.3 p. 72.",
+        (
+            (0, "FURTHER_TELEGRAMS_FOLLOW", "Further telegrams follow"),
+            (1, "END_OF_TRANSMISSION", "End of transmission"),
+        ),
+    ),
+    "NmtCommand": (
+        "Command specifier (cs): command (Network management telegram (NMT)). EDS94AYCCA-EN-5.0, 7.2.2 p. 43.",
+        (
+            (1, "START_REMOTE_NODE", "Start Remote Node"), (2, "STOP_REMOTE_NODE", "Stop Remote Node"),
+            (128, "ENTER_PRE_OPERATIONAL", "Enter Pre-Operational"), (129, "RESET_NODE", "Reset node"),
+            (130, "RESET_COMMUNICATION", "Reset communication"),
+        ),
+    ),
+    "NmtNode": (
+        "Node-ID: node (Network management telegram (NMT)). EDS94AYCCA-EN-5.0, 7.2.2 p. 43.",
+        ((0, "ALL_NODES", "All nodes"),),
+    ),
+    "NodeGuardingResponseStatusS": (
+        "NMT slave status: status.s (Node guarding response). EDS94AYCCA-EN-5.0, 10.1.1 p. 75.",
+        ((4, "STOPPED", "Stopped"), (5, "OPERATIONAL", "Operational"), (127, "PRE_OPERATIONAL", "Pre-operational")),
+    ),
+    "HeartbeatStatusS": (
+        "Heartbeat producer status: status.s (Heartbeat telegram). EDS94AYCCA-EN-5.0, 10.2.1 p. 81.",
+        (
+            (0, "BOOT_UP", "Boot-up"), (4, "STOPPED", "Stopped"), (5, "OPERATIONAL", "Operational"),
+            (127, "PRE_OPERATIONAL", "Pre-operational"),
+        ),
+    ),
+    "CobIdEntryCobIdInvalid": (
+        "COB-ID: cob_id.invalid (COB-ID of an SDO channel or of the emergency telegram). EDS94AYCCA-EN-5.0, 14 p. 165.",
+        ((0, "VALID", "Valid"), (1, "INVALID", "Invalid")),
+    ),
+    "PdoCobIdEntryCobIdNoRtr": (
+        "COB-ID: cob_id.no_rtr (COB-ID of a PDO). EDS94AYCCA-EN-5.0, 14 p. 169.",
+        (
+            (0, "RTR_TO_THIS_PDO_POSSIBLE", "RTR to this PDO possible"),
+            (1, "RTR_TO_THIS_PDO_NOT_POSSIBLE", "RTR to this PDO not possible"),
+        ),
+    ),
+    "PdoCobIdEntryCobIdInactive": (
+        "COB-ID: cob_id.inactive (COB-ID of a PDO). EDS94AYCCA-EN-5.0, 14 p. 169.",
+        ((0, "PDO_ACTIVE", "PDO active"), (1, "PDO_INACTIVE", "PDO inactive")),
+    ),
+    "SyncCobIdEntryCobIdProducer": (
+        "COB-ID SYNC message: cob_id.producer (COB-ID of the sync telegram). EDS94AYCCA-EN-5.0, 14 p. 157.",
+        (
+            (0, "NO_SYNC_TELEGRAMS_ARE_CREATED", "No sync telegrams are created"),
+            (1, "SYNC_TELEGRAMS_ARE_CREATED", "Sync telegrams are created"),
         ),
     ),
 }

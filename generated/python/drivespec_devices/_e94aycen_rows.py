@@ -3,7 +3,7 @@
 """Rows of the records of e94aycen, in the order that _catalogue.py reads them."""
 
 INDEX_BASE = 24575
-RESPONSE_MASK = 0xE0000000
+IGNORED_MASK = 0xFC000000
 
 DEVICE = (
     "E94AYCEN Ethernet communication module", "Lenze", "E94AYCEN", "Ethernet", "VC", None,
@@ -709,6 +709,19 @@ ERRATA: tuple[tuple[object, ...], ...] = (
         ),
         "The code shows one error number and not the history of a memory.", "medium", "manual",
     ),
+    (
+        "gci-octet-string", "inconsistency", ("layout:gci", "table:gci-data-types"), (), "",
+        "byte 4 of P2 counts the attached bytes for both types",
+        (
+            (
+                "7.4, note on byte 4 of P2", 41, "EDS94AYCEN-EN-9.0",
+                "When the data type VISIBLE_STRING is transmitted",
+            ),
+            ("7.4, OCTET_STRING", 41, "EDS94AYCEN-EN-9.0", "256 bytes (max.)"),
+        ),
+        "Both types have up to 256 bytes and do not fit P3 and P4, but the note gives a count to one of them alone. Without a count the other could not be read; take what SIZE leaves as a check.",
+        "low", "manual",
+    ),
 )
 
 SELECTIONS: dict[str, tuple[object, ...]] = {
@@ -789,6 +802,25 @@ SELECTIONS: dict[str, tuple[object, ...]] = {
     "C13006EthernetNodeState": (
         "Ethernet node state (C13006). EDS94AYCEN-EN-9.0, 9.2 p. 58.",
         ((0, "NO_ERROR", "No error"), (1, "ERROR_FRAME_LOST", "Error, frame lost")),
+    ),
+    "GciHeaderGsv": (
+        "GSV: gsv (GCI header). EDS94AYCEN-EN-9.0, 7.1 p. 39.",
+        ((130, "READING_PARAMETERS", "Reading parameters"), (131, "WRITING_PARAMETERS", "Writing parameters")),
+    ),
+    "GciHeaderGmqAbort": (
+        "GMQ: gmq.abort (GCI header). EDS94AYCEN-EN-9.0, 7.1 p. 39.",
+        (
+            (0, "DATA_TRANSMISSION_OK", "data transmission ok"),
+            (1, "DATA_TRANSMISSION_ABORTED", "data transmission aborted"),
+        ),
+    ),
+    "GciHeaderGmqRsp": (
+        "GMQ: gmq.rsp (GCI header). EDS94AYCEN-EN-9.0, 7.1 p. 39.",
+        ((0, "REQUEST", "request"), (1, "RESPONSE", "response")),
+    ),
+    "GciHeaderSize": (
+        "SIZE: size (GCI header). EDS94AYCEN-EN-9.0, 7.1 p. 39.",
+        ((20, "N20_BYTES", "20 bytes"), (276, "N276_BYTES", "276 bytes")),
     ),
 }
 

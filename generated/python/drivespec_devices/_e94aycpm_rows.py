@@ -3,7 +3,7 @@
 """Rows of the records of e94aycpm, in the order that _catalogue.py reads them."""
 
 INDEX_BASE = 24575
-RESPONSE_MASK = 0xE0000000
+IGNORED_MASK = 0xFC000000
 
 DEVICE = (
     "E94AYCPM PROFIBUS communication module", "Lenze", "E94AYCPM", "PROFIBUS", "1A", "01.11",
@@ -1889,6 +1889,117 @@ SELECTIONS: dict[str, tuple[object, ...]] = {
             (3, "N187_5_KBPS", "187.5 kbps"), (4, "N500_KBPS", "500 kbps"), (6, "N1_5_MBPS", "1.5 Mbps"),
             (7, "N3_MBPS", "3 Mbps"), (8, "N6_MBPS", "6 Mbps"), (9, "N12_MBPS", "12 Mbps"),
             (10, "N31_25_KBPS", "31.25 kbps"), (11, "N45_45_KBPS", "45.45 kbps"),
+        ),
+    ),
+    "Drivecom4ServiceRequest": (
+        "Service: service.request (DRIVECOM parameter channel, value of 4 bytes). EDS94AYCPM-EN-12.0, 9.2.1 p. 48.",
+        (
+            (0, "NO_REQUEST", "No request"), (1, "READ_REQUEST", "Read request"),
+            (2, "WRITE_REQUEST_WRITE_DATA_TO_THE_CONTROLLER", "Write request (write data to the controller)"),
+            (4, "DATA_TRANSFER_ABORT_BY_THE_MASTER", "Data transfer abort by the master"),
+        ),
+    ),
+    "Drivecom4ServiceLength": (
+        "Service: service.length (DRIVECOM parameter channel, value of 4 bytes). EDS94AYCPM-EN-12.0, 9.2.1 p. 48.",
+        (
+            (0, "N1_BYTE", "1 byte"), (1, "N2_BYTES", "2 bytes"), (2, "N3_BYTES", "3 bytes"),
+            (3, "N4_BYTES", "4 bytes"),
+        ),
+    ),
+    "Drivecom4ServiceStatus": (
+        "Service: service.status (DRIVECOM parameter channel, value of 4 bytes). EDS94AYCPM-EN-12.0, 9.2.1 p. 48.",
+        (
+            (0, "REQUEST_COMPLETED_WITHOUT_ERRORS", "Request completed without errors"),
+            (1, "REQUEST_NOT_COMPLETED_BECAUSE_OF_AN_ERROR", "Request not completed because of an error"),
+        ),
+    ),
+    "Dpv1ReadRequestParametersAttribute": (
+        "Attribute: attribute (PROFIdrive, read request). EDS94AYCPM-EN-12.0, 9.3.3.1 p. 61.",
+        ((16, "VALUE", "Value"),),
+    ),
+    "Dpv1ReadRequestRequestIdentification": (
+        "Request identification: request_identification (PROFIdrive, read request). EDS94AYCPM-EN-12.0, 9.3.3.1 p. 61.",
+        ((1, "REQUEST_PARAMETERS_FOR_READING", "Request parameters for reading"),),
+    ),
+    "Dpv1ReadResponseValuesFormat": (
+        "Format: format (PROFIdrive, response to a correctly executed read request). EDS94AYCPM-EN-12.0, 9.3.3.2 p. 62.",
+        (
+            (2, "INTEGER8", "Integer8"), (3, "INTEGER16", "Integer16"), (4, "INTEGER32", "Integer32"),
+            (5, "UNSIGNED8", "Unsigned8"), (6, "UNSIGNED16", "Unsigned16"), (7, "UNSIGNED32", "Unsigned32"),
+            (9, "VISIBLE_STRING", "Visible string"), (10, "OCTET_STRING", "Octet string"), (64, "ZERO", "Zero"),
+            (65, "BYTE", "Byte"), (66, "WORD", "Word"), (67, "DOUBLE_WORD", "Double word"),
+        ),
+    ),
+    "Dpv1ReadResponseResponseIdentification": (
+        "Response identification: response_identification (PROFIdrive, response to a correctly executed read request). EDS94AYCPM-EN-12.0, 9.3.3.2 p. 62.",
+        ((1, "PARAMETER_HAS_BEEN_READ", "Parameter has been read"),),
+    ),
+    "Dpv1ReadErrorResultsFormat": (
+        "Format: format (PROFIdrive, response to a read error). EDS94AYCPM-EN-12.0, 9.3.3.3 p. 64.",
+        (
+            (2, "INTEGER8", "Integer8"), (3, "INTEGER16", "Integer16"), (4, "INTEGER32", "Integer32"),
+            (5, "UNSIGNED8", "Unsigned8"), (6, "UNSIGNED16", "Unsigned16"), (7, "UNSIGNED32", "Unsigned32"),
+            (9, "VISIBLE_STRING", "Visible string"), (10, "OCTET_STRING", "Octet string"), (64, "ZERO", "Zero"),
+            (65, "BYTE", "Byte"), (66, "WORD", "Word"), (67, "DOUBLE_WORD", "Double word"), (68, "ERROR", "Error"),
+        ),
+    ),
+    "Dpv1ReadErrorResponseIdentification": (
+        "Response identification: response_identification (PROFIdrive, response to a read error). EDS94AYCPM-EN-12.0, 9.3.3.3 p. 64.",
+        ((129, "PARAMETER_HAS_NOT_BEEN_READ", "Parameter has not been read"),),
+    ),
+    "Dpv1WriteRequestRequestIdentification": (
+        "Request identification: request_identification (PROFIdrive, write request). EDS94AYCPM-EN-12.0, 9.3.3.4 p. 66.",
+        ((2, "WRITE_PARAMETER", "Write parameter"),),
+    ),
+    "Dpv1WriteResponseResponseIdentification": (
+        "Response identification: response_identification (PROFIdrive, response to a correctly executed write request). EDS94AYCPM-EN-12.0, 9.3.3.5 p. 68.",
+        ((2, "PARAMETER_HAS_BEEN_WRITTEN", "Parameter has been written"),),
+    ),
+    "Dpv1WriteErrorResultsFormat": (
+        "Format: format (PROFIdrive, response to a write error). EDS94AYCPM-EN-12.0, 9.3.3.6 p. 69.",
+        ((64, "ZERO", "Zero"), (68, "ERROR", "Error")),
+    ),
+    "Dpv1WriteErrorResultsNumberOfValues": (
+        "Number of values: number_of_values (PROFIdrive, response to a write error). EDS94AYCPM-EN-12.0, 9.3.3.6 p. 69.",
+        (
+            (0, "CORRECT_MESSAGE", "Correct message"),
+            (1, "ERROR_CODE_WITHOUT_ADDITIONAL_INFORMATION", "Error code without additional information"),
+            (2, "ERROR_CODE_AND_ADDITIONAL_INFORMATION", "Error code and additional information"),
+        ),
+    ),
+    "Dpv1WriteErrorResponseIdentification": (
+        "Response identification: response_identification (PROFIdrive, response to a write error). EDS94AYCPM-EN-12.0, 9.3.3.6 p. 69.",
+        ((130, "PARAMETER_HAS_NOT_BEEN_WRITTEN", "Parameter has not been written"),),
+    ),
+    "Dpv1HeaderFunction": (
+        "Function identification: function (DP-V1 header). TOSHIBA-E6581738, 6.2.1 p. 32.",
+        ((94, "READ", "Read"), (95, "WRITE", "Write")),
+    ),
+    "Dpv1HeaderDataSet": (
+        "Data set: data_set (DP-V1 header). TOSHIBA-E6581738, 6.2.1 p. 32.",
+        ((47, "PARAMETER_REQUEST_OR_RESPONSE_DB47", "Parameter request or response (DB47)"),),
+    ),
+    "DiagnosisMasterAddress": (
+        "Master address after parameter setting: master_address (Diagnostic message). EDS94AYCPM-EN-12.0, 12.3 p. 85.",
+        ((255, "WITHOUT_PARAMETERISATION", "without parameterisation"),),
+    ),
+    "DiagnosisIdentNumber": (
+        "ID number: ident_number (Diagnostic message). EDS94AYCPM-EN-12.0, 12.3 p. 85.",
+        ((1960, "E94AYCPM", "E94AYCPM"),),
+    ),
+    "DiagnosisStatusTypeType": (
+        "Status_Type: status_type.type (Diagnostic message). EDS94AYCPM-EN-12.0, 12.3 p. 85.",
+        ((1, "STATUS_MESSAGE", "status message"),),
+    ),
+    "DiagnosisStatusTypeStatus": (
+        "Status_Type: status_type.status (Diagnostic message). EDS94AYCPM-EN-12.0, 12.3 p. 85.",
+        ((1, "STATUS", "status"),),
+    ),
+    "DiagnosisSpecifier": (
+        "Specifier: specifier (Diagnostic message). EDS94AYCPM-EN-12.0, 12.3 p. 85.",
+        (
+            (0, "NO_FURTHER_DIFFERENTIATION", "no further differentiation"), (1, "STATUS_COMING", "status coming"),
+            (2, "STATUS_GOING", "status going"),
         ),
     ),
 }

@@ -17,6 +17,7 @@ from importlib import import_module
 
 TYPE_CHECKING = False  # type checkers take it for True; it saves the time that importing typing costs
 if TYPE_CHECKING:
+    from decimal import Decimal
     from fractions import Fraction
     from typing import Any, Union
 
@@ -182,7 +183,13 @@ class NodeRelative(_Record):
     base: int
 
     def at(self, node: int) -> int:
-        """Value for the node address ``node``."""
+        """Value for the node address ``node``.
+
+        Raises:
+            ValueError: The node address is not 1 ... 127.
+        """
+        if not 1 <= node <= 127:
+            raise ValueError(f"{node} is no node address")
         return self.base + node
 
     def __str__(self) -> str:
@@ -275,6 +282,31 @@ class Drive(_Record):
     manufacturer: str
     index_base: int
     error_fields: tuple[BitField, ...]
+
+    def error_parts(self, number: int) -> dict[str, int]:
+        """Number in each field of an error number, by the name of the field.
+
+        Raises:
+            ValueError: The number has bits outside the fields.
+        """
+        if number & ~sum(field.mask for field in self.error_fields):
+            raise ValueError(f"{number} is no error number")
+        return {field.label: field.get(number) for field in self.error_fields}
+
+    def error_number(self, parts: dict[str, int]) -> int:
+        """Error number that has the numbers in its fields, and 0 in those that are left out.
+
+        Raises:
+            LookupError: There is no such field.
+            ValueError: A number does not fit into its field.
+        """
+        number = 0
+        for field in self.error_fields:
+            number = field.put(number, parts.get(field.label, 0))
+        unknown = set(parts) - {field.label for field in self.error_fields}
+        if unknown:
+            raise LookupError(f"an error number has no field {sorted(unknown)[0]!r}")
+        return number
 
 
 @dataclass(frozen=True)
@@ -490,6 +522,47 @@ class Code(_Record):
         if subcode or self.subcodes:
             self.subcode(subcode)
         return self.index, subcode
+
+    def to_wire(self, value: int | float | Fraction | Decimal) -> int:
+        """Number on the bus for a physical value: the value times the scaling.
+
+        A float stands for the decimal number that it is printed as, so 10.2 is 10.2 exactly.
+
+        Raises:
+            ValueError: The code holds no number, or the value lies outside the range or the data type, or between two
+                numbers on the bus.
+        """
+        from fractions import Fraction  # slow to import
+
+        if not self.data_type.is_number:
+            raise ValueError(f"{self.designation} holds no number")
+        exact = Fraction(repr(value)) if isinstance(value, float) else Fraction(value)
+        wire = exact * (self.scaling or 1)
+        if wire.denominator != 1:
+            raise ValueError(f"{value} is no multiple of 1/{self.scaling} of {self.designation}")
+        if self.range is not None and exact not in self.range:
+            raise ValueError(f"{value} lies outside {self.range} of {self.designation}")
+        return self._checked(wire.numerator)
+
+    def from_wire(self, raw: int) -> int | Fraction:
+        """Physical value of a number on the bus: the number divided by the scaling. It may lie outside the range.
+
+        Raises:
+            ValueError: The code holds no number, or its data type not this one.
+        """
+        if not self.data_type.is_number:
+            raise ValueError(f"{self.designation} holds no number")
+        scaling = self.scaling or 1
+        if self._checked(raw) % scaling == 0:
+            return raw // scaling
+        from fractions import Fraction  # slow to import
+
+        return Fraction(raw, scaling)
+
+    def _checked(self, raw: int) -> int:
+        if not self.data_type.lowest <= raw <= self.data_type.highest:
+            raise ValueError(f"{raw} does not fit into {self.data_type.name} of {self.designation}")
+        return raw
 
     def typed(self, raw: int, subcode: int = 0) -> Selection | Flags | int:
         """What a raw value means: the entry of the selection list (of the subcode, if that has its own), the bits, or

@@ -3,7 +3,7 @@
 """Rows of the records of servo931, in the order that _catalogue.py reads them."""
 
 INDEX_BASE = None
-RESPONSE_MASK = 0x00000000
+IGNORED_MASK = 0x00000000
 
 DEVICE = (
     "Servo Drives 930, 931E/K", "Lenze", "931E/K", "CANopen", None, None,
@@ -1313,6 +1313,33 @@ SELECTIONS: dict[str, tuple[object, ...]] = {
     "I6061ModesOfOperationDisplay": (
         "modes_of_operation_display (I-6061/0). KHB-13.0002-EN-4.1-manualshelf, 9.5.3 p. 118.",
         ((7, "INTERPOLATED_POSITION_MODE_IP", "interpolated position mode (IP)"),),
+    ),
+    "SdoCommand": (
+        "Command code: command (Parameter data telegram). KHB-13.0002-EN-4.1, 5.2.1 p. 19.",
+        (
+            (35, "WRITE_REQUEST_4_BYTE_DATA", "Write request (4-byte data)"),
+            (43, "WRITE_REQUEST_2_BYTE_DATA", "Write request (2-byte data)"),
+            (47, "WRITE_REQUEST_1_BYTE_DATA", "Write request (1-byte data)"),
+            (96, "WRITE_RESPONSE", "Write response"), (64, "READ_REQUEST", "Read request"),
+            (67, "READ_RESPONSE_4_BYTE_DATA", "Read response (4-byte data)"),
+            (75, "READ_RESPONSE_2_BYTE_DATA", "Read response (2-byte data)"),
+            (79, "READ_RESPONSE_1_BYTE_DATA", "Read response (1-byte data)"),
+        ),
+    ),
+    "SdoCommandLength": (
+        "Command code: command.length (Parameter data telegram). KHB-13.0002-EN-4.1, 5.2.1 p. 19.",
+        (
+            (0, "N4_BYTES", "4 bytes"), (1, "N3_BYTES", "3 bytes"), (2, "N2_BYTES", "2 bytes"),
+            (3, "N1_BYTE", "1 byte"),
+        ),
+    ),
+    "SdoCommandCs": (
+        "Command code: command.cs (Parameter data telegram). KHB-13.0002-EN-4.1, 5.2.1 p. 19.",
+        (
+            (1, "WRITE_REQUEST", "Write request"),
+            (2, "READ_REQUEST_OR_READ_RESPONSE", "Read request or read response"),
+            (3, "WRITE_RESPONSE", "Write response"), (4, "ERROR_RESPONSE", "Error response"),
+        ),
     ),
 }
 

@@ -9,29 +9,48 @@ when they are first used.
 from typing import Final
 
 from drivespec_devices._enums import Flags, Selection
+from drivespec_devices._panels import IndicatorTable, SwitchGroup, Table
 from drivespec_devices._records import Code, CodeRef, Device, DictionaryObject, Error, Erratum
+from drivespec_devices._e94aycca_telegrams import (
+    Sdo as Sdo,
+    SdoSegmentRequest as SdoSegmentRequest,
+    SdoSegmentResponse as SdoSegmentResponse,
+    SdoError as SdoError,
+    Nmt as Nmt,
+    NodeGuardingResponse as NodeGuardingResponse,
+    Heartbeat as Heartbeat,
+    Emergency as Emergency,
+    PdoMappingEntry as PdoMappingEntry,
+    ConsumerHeartbeatEntry as ConsumerHeartbeatEntry,
+    NodeGuardingEntry as NodeGuardingEntry,
+    CobIdEntry as CobIdEntry,
+    PdoCobIdEntry as PdoCobIdEntry,
+    SyncCobIdEntry as SyncCobIdEntry,
+    Signature as Signature,
+)
 
 __all__ = (
-    "CODES", "DEVICE", "ERRATA", "ERRORS", "OBJECTS", "code", "code_by_name", "codes_at", "error", "errors_at",
-    "object_at", "code_index", "index_code", "INDEX_BASE", "C00369_CAN_SYNC_TRANSMISSION_CYCLE_TIME",
-    "C00615_RESP_TO_IMP_DEVICE_CONFIG", "C00636_RESP_TO_NEW_MODULE_IN_MXI1", "C00637_RESP_TO_NEW_MODULE_IN_MXI2",
-    "C01120_SYNC_SOURCE", "C01121_SYNC_CYCLE_TIME", "C01122_SYNC_PHASE_POSITION", "C01123_SYNC_TOLERANCE",
-    "C01124_SYNC_PLL_INCREMENT", "C01130_CAN_SYNC_APPLICATION_CYCLE", "C13311_CAN_TPDO1_MASK_BYTE_X",
-    "C13312_CAN_TPDO2_MASK_BYTE_X", "C13313_CAN_TPDO3_MASK_BYTE_X", "C13314_CAN_TPDO4_MASK_BYTE_X",
-    "C13320_CAN_TPDOX_IDENTIFIER", "C13321_CAN_RPDOX_IDENTIFIER", "C13322_CAN_TPDOX_TX_MODE",
-    "C13323_CAN_RPDOX_RX_MODE", "C13324_CAN_TPDOX_DELAY_TIME", "C13343_CAN_TPDO_COUNTER",
-    "C13344_CAN_RPDO_COUNTER", "C13345_CAN_ERROR", "C13346_CAN_HEARTBEAT_ACTIVITY", "C13347_CAN_HEARTBEAT_STATUS",
-    "C13348_CAN_STATUS_DIP_SWITCH", "C13349_CAN_SETTING_OF_DIP_SWITCH", "C13350_CAN_NODE_ADDRESS",
-    "C13351_CAN_BAUD_RATE", "C13352_CAN_SLAVE_MASTER", "C13356_CAN_TPDOX_CYCLE_TIME",
-    "C13357_CAN_RPDOX_MONITORING_TIME", "C13359_CAN_STATUS", "C13360_CAN_TELEGRAM_AND_ERROR_COUNTER",
-    "C13361_CAN_BUS_LOAD", "C13367_CAN_SYNC_RX_IDENTIFIER", "C13368_CAN_SYNC_TX_IDENTIFIER",
-    "C13372_CAN_SDO_SERVER_RX_IDENTIFIER", "C13373_CAN_SDO_SERVER_TX_IDENTIFIER",
-    "C13374_CAN_SDO_CLIENT_NODE_ADDRESS", "C13375_CAN_SDO_CLIENT_RX_IDENTIFIER",
-    "C13376_CAN_SDO_CLIENT_TX_IDENTIFIER", "C13377_CAN_SDO_SERVER_NODE_ADDRESS",
-    "C13378_CAN_DELAY_BOOT_UP_OPERATIONAL", "C13381_CAN_HEARTBEAT_PRODUCER_TIME", "C13382_CAN_GUARD_TIME",
-    "C13383_CAN_LIFE_TIME_FACTOR", "C13385_CAN_HEARTBEAT_CONSUMER_TIME", "C13386_CAN_NODE_GUARDING",
-    "C13387_CAN_NODE_GUARDING_ACTIVITY", "C13388_CAN_NODE_GUARDING_STATUS", "C13390_CAN_ERROR_REGISTER_DS301V402",
-    "C13391_CAN_EMERGENCY_OBJECT", "C13392_CAN_EMERGENCY_DELAY_TIME", "C13393_CAN_RESULT_BUS_SCAN",
+    "CODES", "DEVICE", "ERRATA", "ERRORS", "INDICATORS", "OBJECTS", "SWITCHES", "TABLES", "code", "code_by_name",
+    "codes_at", "error", "errors_at", "object_at", "code_index", "index_code", "error_number", "error_parts",
+    "INDEX_BASE", "C00369_CAN_SYNC_TRANSMISSION_CYCLE_TIME", "C00615_RESP_TO_IMP_DEVICE_CONFIG",
+    "C00636_RESP_TO_NEW_MODULE_IN_MXI1", "C00637_RESP_TO_NEW_MODULE_IN_MXI2", "C01120_SYNC_SOURCE",
+    "C01121_SYNC_CYCLE_TIME", "C01122_SYNC_PHASE_POSITION", "C01123_SYNC_TOLERANCE", "C01124_SYNC_PLL_INCREMENT",
+    "C01130_CAN_SYNC_APPLICATION_CYCLE", "C13311_CAN_TPDO1_MASK_BYTE_X", "C13312_CAN_TPDO2_MASK_BYTE_X",
+    "C13313_CAN_TPDO3_MASK_BYTE_X", "C13314_CAN_TPDO4_MASK_BYTE_X", "C13320_CAN_TPDOX_IDENTIFIER",
+    "C13321_CAN_RPDOX_IDENTIFIER", "C13322_CAN_TPDOX_TX_MODE", "C13323_CAN_RPDOX_RX_MODE",
+    "C13324_CAN_TPDOX_DELAY_TIME", "C13343_CAN_TPDO_COUNTER", "C13344_CAN_RPDO_COUNTER", "C13345_CAN_ERROR",
+    "C13346_CAN_HEARTBEAT_ACTIVITY", "C13347_CAN_HEARTBEAT_STATUS", "C13348_CAN_STATUS_DIP_SWITCH",
+    "C13349_CAN_SETTING_OF_DIP_SWITCH", "C13350_CAN_NODE_ADDRESS", "C13351_CAN_BAUD_RATE",
+    "C13352_CAN_SLAVE_MASTER", "C13356_CAN_TPDOX_CYCLE_TIME", "C13357_CAN_RPDOX_MONITORING_TIME",
+    "C13359_CAN_STATUS", "C13360_CAN_TELEGRAM_AND_ERROR_COUNTER", "C13361_CAN_BUS_LOAD",
+    "C13367_CAN_SYNC_RX_IDENTIFIER", "C13368_CAN_SYNC_TX_IDENTIFIER", "C13372_CAN_SDO_SERVER_RX_IDENTIFIER",
+    "C13373_CAN_SDO_SERVER_TX_IDENTIFIER", "C13374_CAN_SDO_CLIENT_NODE_ADDRESS",
+    "C13375_CAN_SDO_CLIENT_RX_IDENTIFIER", "C13376_CAN_SDO_CLIENT_TX_IDENTIFIER",
+    "C13377_CAN_SDO_SERVER_NODE_ADDRESS", "C13378_CAN_DELAY_BOOT_UP_OPERATIONAL",
+    "C13381_CAN_HEARTBEAT_PRODUCER_TIME", "C13382_CAN_GUARD_TIME", "C13383_CAN_LIFE_TIME_FACTOR",
+    "C13385_CAN_HEARTBEAT_CONSUMER_TIME", "C13386_CAN_NODE_GUARDING", "C13387_CAN_NODE_GUARDING_ACTIVITY",
+    "C13388_CAN_NODE_GUARDING_STATUS", "C13390_CAN_ERROR_REGISTER_DS301V402", "C13391_CAN_EMERGENCY_OBJECT",
+    "C13392_CAN_EMERGENCY_DELAY_TIME", "C13393_CAN_RESULT_BUS_SCAN",
     "C13394_CAN_PREDEFINED_ERROR_FIELD_DS301V402", "C13591_RESP_TO_CAN_RPDOX_ERROR", "C13595_RESP_TO_CAN_BUS_OFF",
     "C13612_RESP_TO_CAN_NODE_GUARDING_ERROR", "C13613_RESP_TO_CAN_HEARTBEAT_ERROR",
     "C13614_RESP_TO_CAN_LIFE_GUARDING_ERROR", "C13625_CAN_BEHAVIOUR_IN_CASE_OF_FAULT",
@@ -199,11 +218,13 @@ __all__ = (
     "SDO_ABORT_DATA_CANNOT_BE_TRANSFERRED_STORED_FOR_APPLICATION_DUE_TO_LOCAL_CONTROL",
     "SDO_ABORT_DATA_CANNOT_BE_TRANSFERRED_STORED_FOR_APPLICATION_DUE_TO_CURRENT_DEVICE_STATUS",
     "SDO_ABORT_DYNAMIC_GENERATION_OF_OBJECT_DIRECTORY_NOT_SUCCESSFUL_OR_NO_OBJECT_DIRECTORY_AVAILABLE_E_G_OBJECT_DIRECTORY_GENERATED_FROM_FILE_GENERATION_NOT_POSSIBLE_BECAUSE_OF_A_FILE_ERROR",
-    "DriveResponse", "DriveModule", "DriveCommand", "C00615RespToImpDeviceConfig", "C00636RespToNewModuleInMxi1",
-    "C00637RespToNewModuleInMxi2", "C01120SyncSource", "C01124SyncPllIncrement", "C13311CanTpdo1MaskByteXFlags",
-    "C13312CanTpdo2MaskByteXFlags", "C13313CanTpdo3MaskByteXFlags", "C13314CanTpdo4MaskByteXFlags",
-    "C13320CanTpdoxIdentifierFlags", "C13321CanRpdoxIdentifierFlags", "C13345CanError",
-    "C13346CanHeartbeatActivityFlags", "C13347CanHeartbeatStatus", "C13348CanStatusDipSwitch",
+    "Sdo", "SdoSegmentRequest", "SdoSegmentResponse", "SdoError", "Nmt", "NodeGuardingResponse", "Heartbeat",
+    "Emergency", "PdoMappingEntry", "ConsumerHeartbeatEntry", "NodeGuardingEntry", "CobIdEntry", "PdoCobIdEntry",
+    "SyncCobIdEntry", "Signature", "DriveResponse", "DriveModule", "DriveCommand", "C00615RespToImpDeviceConfig",
+    "C00636RespToNewModuleInMxi1", "C00637RespToNewModuleInMxi2", "C01120SyncSource", "C01124SyncPllIncrement",
+    "C13311CanTpdo1MaskByteXFlags", "C13312CanTpdo2MaskByteXFlags", "C13313CanTpdo3MaskByteXFlags",
+    "C13314CanTpdo4MaskByteXFlags", "C13320CanTpdoxIdentifierFlags", "C13321CanRpdoxIdentifierFlags",
+    "C13345CanError", "C13346CanHeartbeatActivityFlags", "C13347CanHeartbeatStatus", "C13348CanStatusDipSwitch",
     "C13349Sub2BaudRate", "C13351CanBaudRate", "C13352CanSlaveMaster", "C13359CanStatus",
     "C13372CanSdoServerRxIdentifierFlags", "C13373CanSdoServerTxIdentifierFlags",
     "C13375CanSdoClientRxIdentifierFlags", "C13376CanSdoClientTxIdentifierFlags",
@@ -219,6 +240,9 @@ __all__ = (
     "I1209Sub1CobIdClientServerRxFlags", "I1400Sub1CobIdUsedByRpdoFlags", "I1401Sub1CobIdUsedByRpdoFlags",
     "I1402Sub1CobIdUsedByRpdoFlags", "I1403Sub1CobIdUsedByRpdoFlags", "I1800Sub1CobIdUsedByTpdoFlags",
     "I1801Sub1CobIdUsedByTpdoFlags", "I1802Sub1CobIdUsedByTpdoFlags", "I1803Sub1CobIdUsedByTpdoFlags",
+    "SdoCommand", "SdoCommandN", "SdoCommandCs", "SdoSegmentRequestCommand", "SdoSegmentResponseCommandC",
+    "NmtCommand", "NmtNode", "NodeGuardingResponseStatusS", "HeartbeatStatusS", "CobIdEntryCobIdInvalid",
+    "PdoCobIdEntryCobIdNoRtr", "PdoCobIdEntryCobIdInactive", "SyncCobIdEntryCobIdProducer",
 )
 
 DEVICE: Final[Device]
@@ -232,6 +256,15 @@ OBJECTS: Final[tuple[DictionaryObject, ...]]
 
 ERRORS: Final[tuple[Error, ...]]
 """Every error number, by kind and number."""
+
+INDICATORS: Final[dict[str, IndicatorTable]]
+"""LEDs that are read together, by their id."""
+
+SWITCHES: Final[dict[str, SwitchGroup]]
+"""DIP switches that set one thing, by their id."""
+
+TABLES: Final[dict[str, Table]]
+"""Printed tables that have no form of their own, by their id."""
 
 ERRATA: Final[dict[str, Erratum]]
 """What the manuals print wrong, by the id that the records name."""
@@ -253,11 +286,14 @@ def code_by_name(name: str, slot: str | None = None) -> Code:
         LookupError: The device has no such code or slot, or several of that name.
     """
 
-def code_index(number: int) -> int:
+def code_index(number: int, slot: str | None = None) -> int:
     """Index under which the bus reaches a code of the drive, whether the manual lists it or not.
+
+    With ``slot`` the number of a code of the first slot stands for its twin in that slot.
 
     Raises:
         ValueError: No code has that number.
+        LookupError: The device has no such slot.
     """
 
 def index_code(index: int) -> int:
@@ -286,7 +322,7 @@ def object_at(index: int) -> DictionaryObject:
 def error(number: int, kind: str = "device") -> Error:
     """The one entry of that kind that stands for an error number; of a run every number.
 
-    The response field of a device's error number does not matter.
+    The fields response and instance of a device's error number do not matter.
 
     Raises:
         LookupError: The device has no such error, or several (``errors_at`` gives them all).
@@ -294,6 +330,21 @@ def error(number: int, kind: str = "device") -> Error:
 
 def errors_at(number: int, kind: str = "device") -> tuple[Error, ...]:
     """Every entry of that kind that stands for an error number, single numbers before runs."""
+
+def error_parts(number: int) -> dict[str, int]:
+    """Number in each field of a device's error number, by the name of the field.
+
+    Raises:
+        ValueError: The number has bits outside the fields.
+    """
+
+def error_number(**parts: int) -> int:
+    """Error number that has the numbers in its fields, and 0 in those that are left out.
+
+    Raises:
+        LookupError: There is no such field.
+        ValueError: A number does not fit into its field.
+    """
 
 # Codes: their numbers.
 
@@ -5533,4 +5584,98 @@ class I1803Sub1CobIdUsedByTpdoFlags(Flags):
 
     RTR_NOT_POSSIBLE_CANNOT_BE_SET = 0x40000000  # RTR not possible (cannot be set)
     PDO_INACTIVE = 0x80000000  # PDO inactive
+
+class SdoCommand(Selection):
+    """Command: command (Parameter data telegram). EDS94AYCCA-EN-5.0, 9.2 p. 63."""
+
+    WRITE_REQUEST_4_BYTES = 35  # Write request (4 bytes)
+    WRITE_REQUEST_2_BYTES = 43  # Write request (2 bytes)
+    WRITE_REQUEST_1_BYTE = 47  # Write request (1 byte)
+    WRITE_REQUEST_BLOCK = 33  # Write request (block)
+    WRITE_RESPONSE = 96  # Write response
+    READ_REQUEST = 64  # Read request
+    READ_RESPONSE_4_BYTES = 67  # Read response (4 bytes)
+    READ_RESPONSE_2_BYTES = 75  # Read response (2 bytes)
+    READ_RESPONSE_1_BYTE = 79  # Read response (1 byte)
+    READ_RESPONSE_BLOCK = 65  # Read response (block)
+
+class SdoCommandN(Selection):
+    """Command: command.n (Parameter data telegram). EDS94AYCCA-EN-5.0, 9.2 p. 63."""
+
+    N4_BYTES = 0  # 4 bytes
+    N3_BYTES = 1  # 3 bytes
+    N2_BYTES = 2  # 2 bytes
+    N1_BYTES = 3  # 1 bytes
+
+class SdoCommandCs(Selection):
+    """Command: command.cs (Parameter data telegram). EDS94AYCCA-EN-5.0, 9.2 p. 63."""
+
+    WRITE_REQUEST = 1  # Write request
+    READ_REQUEST_OR_READ_RESPONSE = 2  # Read request or read response
+    WRITE_RESPONSE = 3  # Write response
+
+class SdoSegmentRequestCommand(Selection):
+    """Command: command (Read segment request). EDS94AYCCA-EN-5.0, 9.3.3 p. 72."""
+
+    READ_SEGMENT_REQUEST_TOGGLE_BIT_0 = 96  # Read Segment Request, toggle bit 0
+    READ_SEGMENT_REQUEST_TOGGLE_BIT_1 = 112  # Read Segment Request, toggle bit 1
+
+class SdoSegmentResponseCommandC(Selection):
+    """Command: command.c (Read segment response). EDS94AYCCA-EN-5.0, 9.3.3 p. 72."""
+
+    FURTHER_TELEGRAMS_FOLLOW = 0  # Further telegrams follow
+    END_OF_TRANSMISSION = 1  # End of transmission
+
+class NmtCommand(Selection):
+    """Command specifier (cs): command (Network management telegram (NMT)). EDS94AYCCA-EN-5.0, 7.2.2 p. 43."""
+
+    START_REMOTE_NODE = 1  # Start Remote Node
+    STOP_REMOTE_NODE = 2  # Stop Remote Node
+    ENTER_PRE_OPERATIONAL = 128  # Enter Pre-Operational
+    RESET_NODE = 129  # Reset node
+    RESET_COMMUNICATION = 130  # Reset communication
+
+class NmtNode(Selection):
+    """Node-ID: node (Network management telegram (NMT)). EDS94AYCCA-EN-5.0, 7.2.2 p. 43."""
+
+    ALL_NODES = 0  # All nodes
+
+class NodeGuardingResponseStatusS(Selection):
+    """NMT slave status: status.s (Node guarding response). EDS94AYCCA-EN-5.0, 10.1.1 p. 75."""
+
+    STOPPED = 4  # Stopped
+    OPERATIONAL = 5  # Operational
+    PRE_OPERATIONAL = 127  # Pre-operational
+
+class HeartbeatStatusS(Selection):
+    """Heartbeat producer status: status.s (Heartbeat telegram). EDS94AYCCA-EN-5.0, 10.2.1 p. 81."""
+
+    BOOT_UP = 0  # Boot-up
+    STOPPED = 4  # Stopped
+    OPERATIONAL = 5  # Operational
+    PRE_OPERATIONAL = 127  # Pre-operational
+
+class CobIdEntryCobIdInvalid(Selection):
+    """COB-ID: cob_id.invalid (COB-ID of an SDO channel or of the emergency telegram). EDS94AYCCA-EN-5.0, 14 p. 165."""
+
+    VALID = 0  # Valid
+    INVALID = 1  # Invalid
+
+class PdoCobIdEntryCobIdNoRtr(Selection):
+    """COB-ID: cob_id.no_rtr (COB-ID of a PDO). EDS94AYCCA-EN-5.0, 14 p. 169."""
+
+    RTR_TO_THIS_PDO_POSSIBLE = 0  # RTR to this PDO possible
+    RTR_TO_THIS_PDO_NOT_POSSIBLE = 1  # RTR to this PDO not possible
+
+class PdoCobIdEntryCobIdInactive(Selection):
+    """COB-ID: cob_id.inactive (COB-ID of a PDO). EDS94AYCCA-EN-5.0, 14 p. 169."""
+
+    PDO_ACTIVE = 0  # PDO active
+    PDO_INACTIVE = 1  # PDO inactive
+
+class SyncCobIdEntryCobIdProducer(Selection):
+    """COB-ID SYNC message: cob_id.producer (COB-ID of the sync telegram). EDS94AYCCA-EN-5.0, 14 p. 157."""
+
+    NO_SYNC_TELEGRAMS_ARE_CREATED = 0  # No sync telegrams are created
+    SYNC_TELEGRAMS_ARE_CREATED = 1  # Sync telegrams are created
 

@@ -3,7 +3,8 @@
 """E94AYCEN Ethernet communication module.
 
 The stub file beside this module documents every name. The constants stand here; enums, records and look-ups are
-built when they are first used, from the rows in _e94aycen_rows.py.
+built when they are first used, from the rows in _e94aycen_rows.py; telegrams stand in
+_e94aycen_telegrams.py.
 """
 
 # Codes: their numbers.
@@ -67,11 +68,12 @@ GCI_RETRY_NUMBER_ABORT = 0x00009013
 GCI_UNKNOWN_CLIENT_RESPONSE = 0x00009014
 
 __all__ = (
-    "CODES", "DEVICE", "ERRATA", "ERRORS", "OBJECTS", "code", "code_by_name", "codes_at", "error", "errors_at",
-    "object_at", "code_index", "index_code", "INDEX_BASE", "C00615_RESP_TO_IMP_DEVICE_CONFIG",
-    "C00636_RESP_TO_NEW_MODULE_IN_MXI1", "C00637_RESP_TO_NEW_MODULE_IN_MXI2", "C13000_ETHERNET_IP_ADDRESS",
-    "C13001_ETHERNET_SUBNETWORK_MASK", "C13002_ETHERNET_GATEWAY_ADDRESS", "C13003_ETHERNET_MAC_ID",
-    "C13004_RESOLVED_IP_ADRESS", "C13005_USE_OF_DHCP", "C13006_ETHERNET_NODE_STATE", "C13007_RESOLVED_SUBNETMASK",
+    "CODES", "DEVICE", "ERRATA", "ERRORS", "INDICATORS", "OBJECTS", "SWITCHES", "TABLES", "code", "code_by_name",
+    "codes_at", "error", "errors_at", "object_at", "code_index", "index_code", "error_number", "error_parts",
+    "INDEX_BASE", "C00615_RESP_TO_IMP_DEVICE_CONFIG", "C00636_RESP_TO_NEW_MODULE_IN_MXI1",
+    "C00637_RESP_TO_NEW_MODULE_IN_MXI2", "C13000_ETHERNET_IP_ADDRESS", "C13001_ETHERNET_SUBNETWORK_MASK",
+    "C13002_ETHERNET_GATEWAY_ADDRESS", "C13003_ETHERNET_MAC_ID", "C13004_RESOLVED_IP_ADRESS",
+    "C13005_USE_OF_DHCP", "C13006_ETHERNET_NODE_STATE", "C13007_RESOLVED_SUBNETMASK",
     "C13008_RESOLVED_GATEWAY_ADDRESS", "C14000_ETHERNET_IP_ADDRESS", "C14001_ETHERNET_SUBNETWORK_MASK",
     "C14002_ETHERNET_GATEWAY_ADDRESS", "C14003_ETHERNET_MAC_ID", "C14004_RESOLVED_IP_ADRESS",
     "C14005_USE_OF_DHCP", "C14006_ETHERNET_NODE_STATE", "C14007_RESOLVED_SUBNETMASK",
@@ -84,8 +86,14 @@ __all__ = (
     "GCI_WRONG_GMT_RECEIVED", "GCI_UNKNOWN_SERVER_REQUEST", "GCI_WRONG_SERVER_PARAMETER",
     "GCI_SERVER_QUEUE_IS_FULL", "GCI_SRV_SEND_ERROR", "GCI_SRV_TIMEOUT", "GCI_WRONG_CLIENT_PARAMETER",
     "GCI_WRONG_CHANNEL_NUMBER", "GCI_TX_CONVERSION_ERROR", "GCI_RX_CONVERSION_ERROR", "GCI_RETRY_NUMBER_ABORT",
-    "GCI_UNKNOWN_CLIENT_RESPONSE", "DriveResponse", "DriveModule", "DriveCommand", "C00615RespToImpDeviceConfig",
-    "C00636RespToNewModuleInMxi1", "C00637RespToNewModuleInMxi2", "C13005UseOfDhcp", "C13006EthernetNodeState",
+    "GCI_UNKNOWN_CLIENT_RESPONSE", "GciHeader", "GciP0", "Gci", "DriveResponse", "DriveModule", "DriveCommand",
+    "C00615RespToImpDeviceConfig", "C00636RespToNewModuleInMxi1", "C00637RespToNewModuleInMxi2",
+    "C13005UseOfDhcp", "C13006EthernetNodeState", "GciHeaderGsv", "GciHeaderGmqAbort", "GciHeaderGmqRsp",
+    "GciHeaderSize",
+)
+
+_TELEGRAMS = (
+    "GciHeader", "GciP0", "Gci",
 )
 
 _catalogue = None
@@ -96,6 +104,10 @@ def __getattr__(name):
     global _catalogue
     if name not in __all__:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    if name in _TELEGRAMS:
+        from drivespec_devices import _e94aycen_telegrams
+
+        return globals().setdefault(name, getattr(_e94aycen_telegrams, name))
     if _catalogue is None:
         from drivespec_devices._catalogue import Catalogue
 

@@ -9,14 +9,21 @@ when they are first used.
 from typing import Final
 
 from drivespec_devices._enums import Flags, Selection
+from drivespec_devices._panels import IndicatorTable, SwitchGroup, Table
 from drivespec_devices._records import Code, CodeRef, Device, DictionaryObject, Error, Erratum
+from drivespec_devices._e94aycen_telegrams import (
+    GciHeader as GciHeader,
+    GciP0 as GciP0,
+    Gci as Gci,
+)
 
 __all__ = (
-    "CODES", "DEVICE", "ERRATA", "ERRORS", "OBJECTS", "code", "code_by_name", "codes_at", "error", "errors_at",
-    "object_at", "code_index", "index_code", "INDEX_BASE", "C00615_RESP_TO_IMP_DEVICE_CONFIG",
-    "C00636_RESP_TO_NEW_MODULE_IN_MXI1", "C00637_RESP_TO_NEW_MODULE_IN_MXI2", "C13000_ETHERNET_IP_ADDRESS",
-    "C13001_ETHERNET_SUBNETWORK_MASK", "C13002_ETHERNET_GATEWAY_ADDRESS", "C13003_ETHERNET_MAC_ID",
-    "C13004_RESOLVED_IP_ADRESS", "C13005_USE_OF_DHCP", "C13006_ETHERNET_NODE_STATE", "C13007_RESOLVED_SUBNETMASK",
+    "CODES", "DEVICE", "ERRATA", "ERRORS", "INDICATORS", "OBJECTS", "SWITCHES", "TABLES", "code", "code_by_name",
+    "codes_at", "error", "errors_at", "object_at", "code_index", "index_code", "error_number", "error_parts",
+    "INDEX_BASE", "C00615_RESP_TO_IMP_DEVICE_CONFIG", "C00636_RESP_TO_NEW_MODULE_IN_MXI1",
+    "C00637_RESP_TO_NEW_MODULE_IN_MXI2", "C13000_ETHERNET_IP_ADDRESS", "C13001_ETHERNET_SUBNETWORK_MASK",
+    "C13002_ETHERNET_GATEWAY_ADDRESS", "C13003_ETHERNET_MAC_ID", "C13004_RESOLVED_IP_ADRESS",
+    "C13005_USE_OF_DHCP", "C13006_ETHERNET_NODE_STATE", "C13007_RESOLVED_SUBNETMASK",
     "C13008_RESOLVED_GATEWAY_ADDRESS", "C14000_ETHERNET_IP_ADDRESS", "C14001_ETHERNET_SUBNETWORK_MASK",
     "C14002_ETHERNET_GATEWAY_ADDRESS", "C14003_ETHERNET_MAC_ID", "C14004_RESOLVED_IP_ADRESS",
     "C14005_USE_OF_DHCP", "C14006_ETHERNET_NODE_STATE", "C14007_RESOLVED_SUBNETMASK",
@@ -29,8 +36,10 @@ __all__ = (
     "GCI_WRONG_GMT_RECEIVED", "GCI_UNKNOWN_SERVER_REQUEST", "GCI_WRONG_SERVER_PARAMETER",
     "GCI_SERVER_QUEUE_IS_FULL", "GCI_SRV_SEND_ERROR", "GCI_SRV_TIMEOUT", "GCI_WRONG_CLIENT_PARAMETER",
     "GCI_WRONG_CHANNEL_NUMBER", "GCI_TX_CONVERSION_ERROR", "GCI_RX_CONVERSION_ERROR", "GCI_RETRY_NUMBER_ABORT",
-    "GCI_UNKNOWN_CLIENT_RESPONSE", "DriveResponse", "DriveModule", "DriveCommand", "C00615RespToImpDeviceConfig",
-    "C00636RespToNewModuleInMxi1", "C00637RespToNewModuleInMxi2", "C13005UseOfDhcp", "C13006EthernetNodeState",
+    "GCI_UNKNOWN_CLIENT_RESPONSE", "GciHeader", "GciP0", "Gci", "DriveResponse", "DriveModule", "DriveCommand",
+    "C00615RespToImpDeviceConfig", "C00636RespToNewModuleInMxi1", "C00637RespToNewModuleInMxi2",
+    "C13005UseOfDhcp", "C13006EthernetNodeState", "GciHeaderGsv", "GciHeaderGmqAbort", "GciHeaderGmqRsp",
+    "GciHeaderSize",
 )
 
 DEVICE: Final[Device]
@@ -44,6 +53,15 @@ OBJECTS: Final[tuple[DictionaryObject, ...]]
 
 ERRORS: Final[tuple[Error, ...]]
 """Every error number, by kind and number."""
+
+INDICATORS: Final[dict[str, IndicatorTable]]
+"""LEDs that are read together, by their id."""
+
+SWITCHES: Final[dict[str, SwitchGroup]]
+"""DIP switches that set one thing, by their id."""
+
+TABLES: Final[dict[str, Table]]
+"""Printed tables that have no form of their own, by their id."""
 
 ERRATA: Final[dict[str, Erratum]]
 """What the manuals print wrong, by the id that the records name."""
@@ -65,11 +83,14 @@ def code_by_name(name: str, slot: str | None = None) -> Code:
         LookupError: The device has no such code or slot, or several of that name.
     """
 
-def code_index(number: int) -> int:
+def code_index(number: int, slot: str | None = None) -> int:
     """Index under which the bus reaches a code of the drive, whether the manual lists it or not.
+
+    With ``slot`` the number of a code of the first slot stands for its twin in that slot.
 
     Raises:
         ValueError: No code has that number.
+        LookupError: The device has no such slot.
     """
 
 def index_code(index: int) -> int:
@@ -98,7 +119,7 @@ def object_at(index: int) -> DictionaryObject:
 def error(number: int, kind: str = "device") -> Error:
     """The one entry of that kind that stands for an error number; of a run every number.
 
-    The response field of a device's error number does not matter.
+    The fields response and instance of a device's error number do not matter.
 
     Raises:
         LookupError: The device has no such error, or several (``errors_at`` gives them all).
@@ -106,6 +127,21 @@ def error(number: int, kind: str = "device") -> Error:
 
 def errors_at(number: int, kind: str = "device") -> tuple[Error, ...]:
     """Every entry of that kind that stands for an error number, single numbers before runs."""
+
+def error_parts(number: int) -> dict[str, int]:
+    """Number in each field of a device's error number, by the name of the field.
+
+    Raises:
+        ValueError: The number has bits outside the fields.
+    """
+
+def error_number(**parts: int) -> int:
+    """Error number that has the numbers in its fields, and 0 in those that are left out.
+
+    Raises:
+        LookupError: There is no such field.
+        ValueError: A number does not fit into its field.
+    """
 
 # Codes: their numbers.
 
@@ -647,4 +683,28 @@ class C13006EthernetNodeState(Selection):
 
     NO_ERROR = 0  # No error
     ERROR_FRAME_LOST = 1  # Error, frame lost
+
+class GciHeaderGsv(Selection):
+    """GSV: gsv (GCI header). EDS94AYCEN-EN-9.0, 7.1 p. 39."""
+
+    READING_PARAMETERS = 130  # Reading parameters
+    WRITING_PARAMETERS = 131  # Writing parameters
+
+class GciHeaderGmqAbort(Selection):
+    """GMQ: gmq.abort (GCI header). EDS94AYCEN-EN-9.0, 7.1 p. 39."""
+
+    DATA_TRANSMISSION_OK = 0  # data transmission ok
+    DATA_TRANSMISSION_ABORTED = 1  # data transmission aborted
+
+class GciHeaderGmqRsp(Selection):
+    """GMQ: gmq.rsp (GCI header). EDS94AYCEN-EN-9.0, 7.1 p. 39."""
+
+    REQUEST = 0  # request
+    RESPONSE = 1  # response
+
+class GciHeaderSize(Selection):
+    """SIZE: size (GCI header). EDS94AYCEN-EN-9.0, 7.1 p. 39."""
+
+    N20_BYTES = 20  # 20 bytes
+    N276_BYTES = 276  # 276 bytes
 

@@ -3,7 +3,8 @@
 """E94AYCPM PROFIBUS communication module.
 
 The stub file beside this module documents every name. The constants stand here; enums, records and look-ups are
-built when they are first used, from the rows in _e94aycpm_rows.py.
+built when they are first used, from the rows in _e94aycpm_rows.py; telegrams stand in
+_e94aycpm_telegrams.py.
 """
 
 # Codes: their numbers.
@@ -151,17 +152,18 @@ DPV1_RESERVED_00000019 = 0x00000019
 DPV1_MANUFACTURER_SPECIFIC = 0x00000065
 
 __all__ = (
-    "CODES", "DEVICE", "ERRATA", "ERRORS", "OBJECTS", "code", "code_by_name", "codes_at", "error", "errors_at",
-    "object_at", "code_index", "index_code", "INDEX_BASE", "C00615_RESP_TO_IMP_DEVICE_CONF",
-    "C00636_RESP_TO_NEW_MODULE_IN_MXI1", "C00637_RESP_TO_NEW_MODULE_IN_MXI2",
-    "C01501_RESP_TO_COMM_ERROR_WITH_MXI1", "C01502_RESP_TO_COMM_ERROR_WITH_MXI2", "C13231_SERVICE_CODE",
-    "C13489_SERVICE_CODE", "C13531_SERVICE_CODE", "C13789_SERVICE_CODE", "C13850_ALL_WORDS_TO_MASTER",
-    "C13851_ALL_WORDS_FROM_MASTER", "C13852_ALL_WORDS_TO_STANDARD_DEVICE",
-    "C13853_ALL_WORDS_FROM_STANDARD_DEVICE", "C13854_COM_WORD_TO_STANDARD_DEVICE",
-    "C13855_COM_WORD_FROM_STANDARD_DEVICE", "C13860_SETTINGS", "C13861_BUS_STATUS", "C13862_BUS_COUNTER",
-    "C13863_BAUD_RATE", "C13864_ACTIVE_STATION_ADDRESS", "C13865_DISPLAY_MOST_RECENT_PRM_DATA",
-    "C13866_DISPLAY_MOST_RECENT_CFG_DATA", "C13867_DISPLAY_MOST_RECENT_DIAGNOSTIC_DATA",
-    "C13868_DISPLAY_DP_STATE", "C13880_REACTION_ON_COMMUNICATION_FAULT", "C13881_MONITORING_TIME_DATA_EXCHANGE",
+    "CODES", "DEVICE", "ERRATA", "ERRORS", "INDICATORS", "OBJECTS", "SWITCHES", "TABLES", "code", "code_by_name",
+    "codes_at", "error", "errors_at", "object_at", "code_index", "index_code", "error_number", "error_parts",
+    "INDEX_BASE", "C00615_RESP_TO_IMP_DEVICE_CONF", "C00636_RESP_TO_NEW_MODULE_IN_MXI1",
+    "C00637_RESP_TO_NEW_MODULE_IN_MXI2", "C01501_RESP_TO_COMM_ERROR_WITH_MXI1",
+    "C01502_RESP_TO_COMM_ERROR_WITH_MXI2", "C13231_SERVICE_CODE", "C13489_SERVICE_CODE", "C13531_SERVICE_CODE",
+    "C13789_SERVICE_CODE", "C13850_ALL_WORDS_TO_MASTER", "C13851_ALL_WORDS_FROM_MASTER",
+    "C13852_ALL_WORDS_TO_STANDARD_DEVICE", "C13853_ALL_WORDS_FROM_STANDARD_DEVICE",
+    "C13854_COM_WORD_TO_STANDARD_DEVICE", "C13855_COM_WORD_FROM_STANDARD_DEVICE", "C13860_SETTINGS",
+    "C13861_BUS_STATUS", "C13862_BUS_COUNTER", "C13863_BAUD_RATE", "C13864_ACTIVE_STATION_ADDRESS",
+    "C13865_DISPLAY_MOST_RECENT_PRM_DATA", "C13866_DISPLAY_MOST_RECENT_CFG_DATA",
+    "C13867_DISPLAY_MOST_RECENT_DIAGNOSTIC_DATA", "C13868_DISPLAY_DP_STATE",
+    "C13880_REACTION_ON_COMMUNICATION_FAULT", "C13881_MONITORING_TIME_DATA_EXCHANGE",
     "C13882_MONITORING_TIME_WATCHDOG", "C13885_CLEAR_PROCESS_DATA", "C13886_SET_EXT_DIAGNOSTIC_BIT_UPON",
     "C13887_SUPPRESS_SIGNALLING_DIAG_MESS_UPON", "C13897_PROFISAFE_TARGET_ADDRESS", "C13899_STATION_ADDRESS",
     "C13900_FIRMWARE_PRODUCT_TYPE", "C13901_FIRMWARE_COMPILATION_DATE", "C13902_FIRMWARE_VERSION",
@@ -203,12 +205,29 @@ __all__ = (
     "DPV1_REQUEST_CANNOT_BE_EXECUTED_DUE_TO_THE_OPERATING_STATE", "DPV1_RESERVED_00000012",
     "DPV1_RESERVED_00000013", "DPV1_VALUE_IMPERMISSIBLE", "DPV1_RESPONSE_TOO_LONG",
     "DPV1_PARAMETER_ADDRESS_IMPERMISSIBLE", "DPV1_FORMAT_IMPERMISSIBLE", "DPV1_NUMBER_OF_VALUES_NOT_CONSISTENT",
-    "DPV1_RESERVED_00000019", "DPV1_MANUFACTURER_SPECIFIC", "DriveResponse", "DriveModule", "DriveCommand",
-    "C00615RespToImpDeviceConf", "C00636RespToNewModuleInMxi1", "C00637RespToNewModuleInMxi2",
-    "C01501RespToCommErrorWithMxi1", "C01502RespToCommErrorWithMxi2", "C13860Sub1Profisafe",
-    "C13861BusStatusFlags", "C13863BaudRate", "C13868DisplayDpState", "C13880ReactionOnCommunicationFault",
-    "C13885ClearProcessData", "C13886SetExtDiagnosticBitUponFlags", "C13887SuppressSignallingDiagMessUponFlags",
-    "Pnu963BaudRate",
+    "DPV1_RESERVED_00000019", "DPV1_MANUFACTURER_SPECIFIC", "Drivecom4", "Drivecom2", "Drivecom1",
+    "DrivecomError", "DrivecomAbort", "Dpv1ReadRequestParameters", "Dpv1ReadRequest", "Dpv1ReadResponseValues",
+    "Dpv1ReadResponse", "Dpv1ReadErrorResults", "Dpv1ReadError", "Dpv1WriteRequestParameters",
+    "Dpv1WriteRequestValues", "Dpv1WriteRequest", "Dpv1WriteResponse", "Dpv1WriteErrorResults", "Dpv1WriteError",
+    "Dpv1Header", "Diagnosis", "DriveResponse", "DriveModule", "DriveCommand", "C00615RespToImpDeviceConf",
+    "C00636RespToNewModuleInMxi1", "C00637RespToNewModuleInMxi2", "C01501RespToCommErrorWithMxi1",
+    "C01502RespToCommErrorWithMxi2", "C13860Sub1Profisafe", "C13861BusStatusFlags", "C13863BaudRate",
+    "C13868DisplayDpState", "C13880ReactionOnCommunicationFault", "C13885ClearProcessData",
+    "C13886SetExtDiagnosticBitUponFlags", "C13887SuppressSignallingDiagMessUponFlags", "Pnu963BaudRate",
+    "Drivecom4ServiceRequest", "Drivecom4ServiceLength", "Drivecom4ServiceStatus",
+    "Dpv1ReadRequestParametersAttribute", "Dpv1ReadRequestRequestIdentification", "Dpv1ReadResponseValuesFormat",
+    "Dpv1ReadResponseResponseIdentification", "Dpv1ReadErrorResultsFormat", "Dpv1ReadErrorResponseIdentification",
+    "Dpv1WriteRequestRequestIdentification", "Dpv1WriteResponseResponseIdentification",
+    "Dpv1WriteErrorResultsFormat", "Dpv1WriteErrorResultsNumberOfValues", "Dpv1WriteErrorResponseIdentification",
+    "Dpv1HeaderFunction", "Dpv1HeaderDataSet", "DiagnosisMasterAddress", "DiagnosisIdentNumber",
+    "DiagnosisStatusTypeType", "DiagnosisStatusTypeStatus", "DiagnosisSpecifier",
+)
+
+_TELEGRAMS = (
+    "Drivecom4", "Drivecom2", "Drivecom1", "DrivecomError", "DrivecomAbort", "Dpv1ReadRequestParameters",
+    "Dpv1ReadRequest", "Dpv1ReadResponseValues", "Dpv1ReadResponse", "Dpv1ReadErrorResults", "Dpv1ReadError",
+    "Dpv1WriteRequestParameters", "Dpv1WriteRequestValues", "Dpv1WriteRequest", "Dpv1WriteResponse",
+    "Dpv1WriteErrorResults", "Dpv1WriteError", "Dpv1Header", "Diagnosis",
 )
 
 _catalogue = None
@@ -219,6 +238,10 @@ def __getattr__(name):
     global _catalogue
     if name not in __all__:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    if name in _TELEGRAMS:
+        from drivespec_devices import _e94aycpm_telegrams
+
+        return globals().setdefault(name, getattr(_e94aycpm_telegrams, name))
     if _catalogue is None:
         from drivespec_devices._catalogue import Catalogue
 

@@ -9,20 +9,43 @@ and look-ups are built when they are first used.
 from typing import Final
 
 from drivespec_devices._enums import Flags, Selection
+from drivespec_devices._panels import IndicatorTable, SwitchGroup, Table
 from drivespec_devices._records import Code, CodeRef, Device, DictionaryObject, Error, Erratum
+from drivespec_devices._e94aycpm_telegrams import (
+    Drivecom4 as Drivecom4,
+    Drivecom2 as Drivecom2,
+    Drivecom1 as Drivecom1,
+    DrivecomError as DrivecomError,
+    DrivecomAbort as DrivecomAbort,
+    Dpv1ReadRequestParameters as Dpv1ReadRequestParameters,
+    Dpv1ReadRequest as Dpv1ReadRequest,
+    Dpv1ReadResponseValues as Dpv1ReadResponseValues,
+    Dpv1ReadResponse as Dpv1ReadResponse,
+    Dpv1ReadErrorResults as Dpv1ReadErrorResults,
+    Dpv1ReadError as Dpv1ReadError,
+    Dpv1WriteRequestParameters as Dpv1WriteRequestParameters,
+    Dpv1WriteRequestValues as Dpv1WriteRequestValues,
+    Dpv1WriteRequest as Dpv1WriteRequest,
+    Dpv1WriteResponse as Dpv1WriteResponse,
+    Dpv1WriteErrorResults as Dpv1WriteErrorResults,
+    Dpv1WriteError as Dpv1WriteError,
+    Dpv1Header as Dpv1Header,
+    Diagnosis as Diagnosis,
+)
 
 __all__ = (
-    "CODES", "DEVICE", "ERRATA", "ERRORS", "OBJECTS", "code", "code_by_name", "codes_at", "error", "errors_at",
-    "object_at", "code_index", "index_code", "INDEX_BASE", "C00615_RESP_TO_IMP_DEVICE_CONF",
-    "C00636_RESP_TO_NEW_MODULE_IN_MXI1", "C00637_RESP_TO_NEW_MODULE_IN_MXI2",
-    "C01501_RESP_TO_COMM_ERROR_WITH_MXI1", "C01502_RESP_TO_COMM_ERROR_WITH_MXI2", "C13231_SERVICE_CODE",
-    "C13489_SERVICE_CODE", "C13531_SERVICE_CODE", "C13789_SERVICE_CODE", "C13850_ALL_WORDS_TO_MASTER",
-    "C13851_ALL_WORDS_FROM_MASTER", "C13852_ALL_WORDS_TO_STANDARD_DEVICE",
-    "C13853_ALL_WORDS_FROM_STANDARD_DEVICE", "C13854_COM_WORD_TO_STANDARD_DEVICE",
-    "C13855_COM_WORD_FROM_STANDARD_DEVICE", "C13860_SETTINGS", "C13861_BUS_STATUS", "C13862_BUS_COUNTER",
-    "C13863_BAUD_RATE", "C13864_ACTIVE_STATION_ADDRESS", "C13865_DISPLAY_MOST_RECENT_PRM_DATA",
-    "C13866_DISPLAY_MOST_RECENT_CFG_DATA", "C13867_DISPLAY_MOST_RECENT_DIAGNOSTIC_DATA",
-    "C13868_DISPLAY_DP_STATE", "C13880_REACTION_ON_COMMUNICATION_FAULT", "C13881_MONITORING_TIME_DATA_EXCHANGE",
+    "CODES", "DEVICE", "ERRATA", "ERRORS", "INDICATORS", "OBJECTS", "SWITCHES", "TABLES", "code", "code_by_name",
+    "codes_at", "error", "errors_at", "object_at", "code_index", "index_code", "error_number", "error_parts",
+    "INDEX_BASE", "C00615_RESP_TO_IMP_DEVICE_CONF", "C00636_RESP_TO_NEW_MODULE_IN_MXI1",
+    "C00637_RESP_TO_NEW_MODULE_IN_MXI2", "C01501_RESP_TO_COMM_ERROR_WITH_MXI1",
+    "C01502_RESP_TO_COMM_ERROR_WITH_MXI2", "C13231_SERVICE_CODE", "C13489_SERVICE_CODE", "C13531_SERVICE_CODE",
+    "C13789_SERVICE_CODE", "C13850_ALL_WORDS_TO_MASTER", "C13851_ALL_WORDS_FROM_MASTER",
+    "C13852_ALL_WORDS_TO_STANDARD_DEVICE", "C13853_ALL_WORDS_FROM_STANDARD_DEVICE",
+    "C13854_COM_WORD_TO_STANDARD_DEVICE", "C13855_COM_WORD_FROM_STANDARD_DEVICE", "C13860_SETTINGS",
+    "C13861_BUS_STATUS", "C13862_BUS_COUNTER", "C13863_BAUD_RATE", "C13864_ACTIVE_STATION_ADDRESS",
+    "C13865_DISPLAY_MOST_RECENT_PRM_DATA", "C13866_DISPLAY_MOST_RECENT_CFG_DATA",
+    "C13867_DISPLAY_MOST_RECENT_DIAGNOSTIC_DATA", "C13868_DISPLAY_DP_STATE",
+    "C13880_REACTION_ON_COMMUNICATION_FAULT", "C13881_MONITORING_TIME_DATA_EXCHANGE",
     "C13882_MONITORING_TIME_WATCHDOG", "C13885_CLEAR_PROCESS_DATA", "C13886_SET_EXT_DIAGNOSTIC_BIT_UPON",
     "C13887_SUPPRESS_SIGNALLING_DIAG_MESS_UPON", "C13897_PROFISAFE_TARGET_ADDRESS", "C13899_STATION_ADDRESS",
     "C13900_FIRMWARE_PRODUCT_TYPE", "C13901_FIRMWARE_COMPILATION_DATE", "C13902_FIRMWARE_VERSION",
@@ -64,12 +87,22 @@ __all__ = (
     "DPV1_REQUEST_CANNOT_BE_EXECUTED_DUE_TO_THE_OPERATING_STATE", "DPV1_RESERVED_00000012",
     "DPV1_RESERVED_00000013", "DPV1_VALUE_IMPERMISSIBLE", "DPV1_RESPONSE_TOO_LONG",
     "DPV1_PARAMETER_ADDRESS_IMPERMISSIBLE", "DPV1_FORMAT_IMPERMISSIBLE", "DPV1_NUMBER_OF_VALUES_NOT_CONSISTENT",
-    "DPV1_RESERVED_00000019", "DPV1_MANUFACTURER_SPECIFIC", "DriveResponse", "DriveModule", "DriveCommand",
-    "C00615RespToImpDeviceConf", "C00636RespToNewModuleInMxi1", "C00637RespToNewModuleInMxi2",
-    "C01501RespToCommErrorWithMxi1", "C01502RespToCommErrorWithMxi2", "C13860Sub1Profisafe",
-    "C13861BusStatusFlags", "C13863BaudRate", "C13868DisplayDpState", "C13880ReactionOnCommunicationFault",
-    "C13885ClearProcessData", "C13886SetExtDiagnosticBitUponFlags", "C13887SuppressSignallingDiagMessUponFlags",
-    "Pnu963BaudRate",
+    "DPV1_RESERVED_00000019", "DPV1_MANUFACTURER_SPECIFIC", "Drivecom4", "Drivecom2", "Drivecom1",
+    "DrivecomError", "DrivecomAbort", "Dpv1ReadRequestParameters", "Dpv1ReadRequest", "Dpv1ReadResponseValues",
+    "Dpv1ReadResponse", "Dpv1ReadErrorResults", "Dpv1ReadError", "Dpv1WriteRequestParameters",
+    "Dpv1WriteRequestValues", "Dpv1WriteRequest", "Dpv1WriteResponse", "Dpv1WriteErrorResults", "Dpv1WriteError",
+    "Dpv1Header", "Diagnosis", "DriveResponse", "DriveModule", "DriveCommand", "C00615RespToImpDeviceConf",
+    "C00636RespToNewModuleInMxi1", "C00637RespToNewModuleInMxi2", "C01501RespToCommErrorWithMxi1",
+    "C01502RespToCommErrorWithMxi2", "C13860Sub1Profisafe", "C13861BusStatusFlags", "C13863BaudRate",
+    "C13868DisplayDpState", "C13880ReactionOnCommunicationFault", "C13885ClearProcessData",
+    "C13886SetExtDiagnosticBitUponFlags", "C13887SuppressSignallingDiagMessUponFlags", "Pnu963BaudRate",
+    "Drivecom4ServiceRequest", "Drivecom4ServiceLength", "Drivecom4ServiceStatus",
+    "Dpv1ReadRequestParametersAttribute", "Dpv1ReadRequestRequestIdentification", "Dpv1ReadResponseValuesFormat",
+    "Dpv1ReadResponseResponseIdentification", "Dpv1ReadErrorResultsFormat", "Dpv1ReadErrorResponseIdentification",
+    "Dpv1WriteRequestRequestIdentification", "Dpv1WriteResponseResponseIdentification",
+    "Dpv1WriteErrorResultsFormat", "Dpv1WriteErrorResultsNumberOfValues", "Dpv1WriteErrorResponseIdentification",
+    "Dpv1HeaderFunction", "Dpv1HeaderDataSet", "DiagnosisMasterAddress", "DiagnosisIdentNumber",
+    "DiagnosisStatusTypeType", "DiagnosisStatusTypeStatus", "DiagnosisSpecifier",
 )
 
 DEVICE: Final[Device]
@@ -83,6 +116,15 @@ OBJECTS: Final[tuple[DictionaryObject, ...]]
 
 ERRORS: Final[tuple[Error, ...]]
 """Every error number, by kind and number."""
+
+INDICATORS: Final[dict[str, IndicatorTable]]
+"""LEDs that are read together, by their id."""
+
+SWITCHES: Final[dict[str, SwitchGroup]]
+"""DIP switches that set one thing, by their id."""
+
+TABLES: Final[dict[str, Table]]
+"""Printed tables that have no form of their own, by their id."""
 
 ERRATA: Final[dict[str, Erratum]]
 """What the manuals print wrong, by the id that the records name."""
@@ -104,11 +146,14 @@ def code_by_name(name: str, slot: str | None = None) -> Code:
         LookupError: The device has no such code or slot, or several of that name.
     """
 
-def code_index(number: int) -> int:
+def code_index(number: int, slot: str | None = None) -> int:
     """Index under which the bus reaches a code of the drive, whether the manual lists it or not.
+
+    With ``slot`` the number of a code of the first slot stands for its twin in that slot.
 
     Raises:
         ValueError: No code has that number.
+        LookupError: The device has no such slot.
     """
 
 def index_code(index: int) -> int:
@@ -137,7 +182,7 @@ def object_at(index: int) -> DictionaryObject:
 def error(number: int, kind: str = "device") -> Error:
     """The one entry of that kind that stands for an error number; of a run every number.
 
-    The response field of a device's error number does not matter.
+    The fields response and instance of a device's error number do not matter.
 
     Raises:
         LookupError: The device has no such error, or several (``errors_at`` gives them all).
@@ -145,6 +190,21 @@ def error(number: int, kind: str = "device") -> Error:
 
 def errors_at(number: int, kind: str = "device") -> tuple[Error, ...]:
     """Every entry of that kind that stands for an error number, single numbers before runs."""
+
+def error_parts(number: int) -> dict[str, int]:
+    """Number in each field of a device's error number, by the name of the field.
+
+    Raises:
+        ValueError: The number has bits outside the fields.
+    """
+
+def error_number(**parts: int) -> int:
+    """Error number that has the numbers in its fields, and 0 in those that are left out.
+
+    Raises:
+        LookupError: There is no such field.
+        ValueError: A number does not fit into its field.
+    """
 
 # Codes: their numbers.
 
@@ -1743,4 +1803,153 @@ class Pnu963BaudRate(Selection):
     N12_MBPS = 9  # 12 Mbps
     N31_25_KBPS = 10  # 31.25 kbps
     N45_45_KBPS = 11  # 45.45 kbps
+
+class Drivecom4ServiceRequest(Selection):
+    """Service: service.request (DRIVECOM parameter channel, value of 4 bytes). EDS94AYCPM-EN-12.0, 9.2.1 p. 48."""
+
+    NO_REQUEST = 0  # No request
+    READ_REQUEST = 1  # Read request
+    WRITE_REQUEST_WRITE_DATA_TO_THE_CONTROLLER = 2  # Write request (write data to the controller)
+    DATA_TRANSFER_ABORT_BY_THE_MASTER = 4  # Data transfer abort by the master
+
+class Drivecom4ServiceLength(Selection):
+    """Service: service.length (DRIVECOM parameter channel, value of 4 bytes). EDS94AYCPM-EN-12.0, 9.2.1 p. 48."""
+
+    N1_BYTE = 0  # 1 byte
+    N2_BYTES = 1  # 2 bytes
+    N3_BYTES = 2  # 3 bytes
+    N4_BYTES = 3  # 4 bytes
+
+class Drivecom4ServiceStatus(Selection):
+    """Service: service.status (DRIVECOM parameter channel, value of 4 bytes). EDS94AYCPM-EN-12.0, 9.2.1 p. 48."""
+
+    REQUEST_COMPLETED_WITHOUT_ERRORS = 0  # Request completed without errors
+    REQUEST_NOT_COMPLETED_BECAUSE_OF_AN_ERROR = 1  # Request not completed because of an error
+
+class Dpv1ReadRequestParametersAttribute(Selection):
+    """Attribute: attribute (PROFIdrive, read request). EDS94AYCPM-EN-12.0, 9.3.3.1 p. 61."""
+
+    VALUE = 16  # Value
+
+class Dpv1ReadRequestRequestIdentification(Selection):
+    """Request identification: request_identification (PROFIdrive, read request). EDS94AYCPM-EN-12.0, 9.3.3.1 p. 61."""
+
+    REQUEST_PARAMETERS_FOR_READING = 1  # Request parameters for reading
+
+class Dpv1ReadResponseValuesFormat(Selection):
+    """Format: format (PROFIdrive, response to a correctly executed read request). EDS94AYCPM-EN-12.0, 9.3.3.2 p. 62."""
+
+    INTEGER8 = 2  # Integer8
+    INTEGER16 = 3  # Integer16
+    INTEGER32 = 4  # Integer32
+    UNSIGNED8 = 5  # Unsigned8
+    UNSIGNED16 = 6  # Unsigned16
+    UNSIGNED32 = 7  # Unsigned32
+    VISIBLE_STRING = 9  # Visible string
+    OCTET_STRING = 10  # Octet string
+    ZERO = 64  # Zero
+    BYTE = 65  # Byte
+    WORD = 66  # Word
+    DOUBLE_WORD = 67  # Double word
+
+class Dpv1ReadResponseResponseIdentification(Selection):
+    """Response identification: response_identification (PROFIdrive, response to a correctly executed read request).
+    EDS94AYCPM-EN-12.0, 9.3.3.2 p. 62.
+    """
+
+    PARAMETER_HAS_BEEN_READ = 1  # Parameter has been read
+
+class Dpv1ReadErrorResultsFormat(Selection):
+    """Format: format (PROFIdrive, response to a read error). EDS94AYCPM-EN-12.0, 9.3.3.3 p. 64."""
+
+    INTEGER8 = 2  # Integer8
+    INTEGER16 = 3  # Integer16
+    INTEGER32 = 4  # Integer32
+    UNSIGNED8 = 5  # Unsigned8
+    UNSIGNED16 = 6  # Unsigned16
+    UNSIGNED32 = 7  # Unsigned32
+    VISIBLE_STRING = 9  # Visible string
+    OCTET_STRING = 10  # Octet string
+    ZERO = 64  # Zero
+    BYTE = 65  # Byte
+    WORD = 66  # Word
+    DOUBLE_WORD = 67  # Double word
+    ERROR = 68  # Error
+
+class Dpv1ReadErrorResponseIdentification(Selection):
+    """Response identification: response_identification (PROFIdrive, response to a read error). EDS94AYCPM-EN-12.0,
+    9.3.3.3 p. 64.
+    """
+
+    PARAMETER_HAS_NOT_BEEN_READ = 129  # Parameter has not been read
+
+class Dpv1WriteRequestRequestIdentification(Selection):
+    """Request identification: request_identification (PROFIdrive, write request). EDS94AYCPM-EN-12.0, 9.3.3.4 p. 66."""
+
+    WRITE_PARAMETER = 2  # Write parameter
+
+class Dpv1WriteResponseResponseIdentification(Selection):
+    """Response identification: response_identification (PROFIdrive, response to a correctly executed write request).
+    EDS94AYCPM-EN-12.0, 9.3.3.5 p. 68.
+    """
+
+    PARAMETER_HAS_BEEN_WRITTEN = 2  # Parameter has been written
+
+class Dpv1WriteErrorResultsFormat(Selection):
+    """Format: format (PROFIdrive, response to a write error). EDS94AYCPM-EN-12.0, 9.3.3.6 p. 69."""
+
+    ZERO = 64  # Zero
+    ERROR = 68  # Error
+
+class Dpv1WriteErrorResultsNumberOfValues(Selection):
+    """Number of values: number_of_values (PROFIdrive, response to a write error). EDS94AYCPM-EN-12.0, 9.3.3.6 p. 69."""
+
+    CORRECT_MESSAGE = 0  # Correct message
+    ERROR_CODE_WITHOUT_ADDITIONAL_INFORMATION = 1  # Error code without additional information
+    ERROR_CODE_AND_ADDITIONAL_INFORMATION = 2  # Error code and additional information
+
+class Dpv1WriteErrorResponseIdentification(Selection):
+    """Response identification: response_identification (PROFIdrive, response to a write error). EDS94AYCPM-EN-12.0,
+    9.3.3.6 p. 69.
+    """
+
+    PARAMETER_HAS_NOT_BEEN_WRITTEN = 130  # Parameter has not been written
+
+class Dpv1HeaderFunction(Selection):
+    """Function identification: function (DP-V1 header). TOSHIBA-E6581738, 6.2.1 p. 32."""
+
+    READ = 94  # Read
+    WRITE = 95  # Write
+
+class Dpv1HeaderDataSet(Selection):
+    """Data set: data_set (DP-V1 header). TOSHIBA-E6581738, 6.2.1 p. 32."""
+
+    PARAMETER_REQUEST_OR_RESPONSE_DB47 = 47  # Parameter request or response (DB47)
+
+class DiagnosisMasterAddress(Selection):
+    """Master address after parameter setting: master_address (Diagnostic message). EDS94AYCPM-EN-12.0, 12.3 p. 85."""
+
+    WITHOUT_PARAMETERISATION = 255  # without parameterisation
+
+class DiagnosisIdentNumber(Selection):
+    """ID number: ident_number (Diagnostic message). EDS94AYCPM-EN-12.0, 12.3 p. 85."""
+
+    E94AYCPM = 1960  # E94AYCPM
+
+class DiagnosisStatusTypeType(Selection):
+    """Status_Type: status_type.type (Diagnostic message). EDS94AYCPM-EN-12.0, 12.3 p. 85."""
+
+    STATUS_MESSAGE = 1  # status message
+
+class DiagnosisStatusTypeStatus(Selection):
+    """Status_Type: status_type.status (Diagnostic message). EDS94AYCPM-EN-12.0, 12.3 p. 85."""
+
+    STATUS = 1  # status
+
+class DiagnosisSpecifier(Selection):
+    """Specifier: specifier (Diagnostic message). EDS94AYCPM-EN-12.0, 12.3 p. 85."""
+
+    NO_FURTHER_DIFFERENTIATION = 0  # no further differentiation
+    STATUS_COMING = 1  # status coming
+    STATUS_GOING = 2  # status going
 

@@ -8,8 +8,8 @@
 //! Prints every fact of the crate as a line `path=value`; what is unknown has no line.
 
 use drivespec_devices::types::{
-    Bit, BitField, Choice, Cite, Code, CodeRef, DataType, Device, Drive, Erratum, ErrorTable, Manual, NodeRelative,
-    Object, ObjectRef, Range, Value,
+    Bit, BitField, Choice, Cite, Code, CodeRef, DataType, Device, Drive, Erratum, ErrorTable, IndicatorTable, Manual,
+    NodeRelative, Object, ObjectRef, Range, SwitchGroup, Value,
 };
 use drivespec_devices::DEVICES;
 use std::fmt::Display;
@@ -77,6 +77,12 @@ fn dump_device(device: &Device) {
     }
     for table in device.errors {
         dump_errors(&format!("{path}/error/{}", table.kind()), table);
+    }
+    for table in device.indicators {
+        dump_indicators(&format!("{path}/indicator/{}", table.id), table);
+    }
+    for group in device.switches {
+        dump_switches(&format!("{path}/switch/{}", group.id), group);
     }
     for erratum in device.errata {
         dump_erratum(&format!("{path}/erratum/{}", erratum.id), erratum);
@@ -182,6 +188,55 @@ fn dump_errors(path: &str, table: &ErrorTable) {
         cite(&path, entry.cite);
         list(&path, "erratum", entry.errata);
     }
+}
+
+fn dump_indicators(path: &str, table: &IndicatorTable) {
+    fact(path, "name", table.name);
+    for (position, led) in table.leds.iter().enumerate() {
+        let path = format!("{path}/led/{position}");
+        fact(&path, "label", led.label);
+        fact(&path, "colour", led.colour);
+        fact(&path, "name", led.name);
+    }
+    for (position, row) in table.rows.iter().enumerate() {
+        let path = format!("{path}/row/{position}");
+        for (position, pattern) in row.patterns.iter().enumerate() {
+            let path = format!("{path}/pattern/{position}");
+            fact(&path, "light", pattern.light.as_str());
+            known(&path, "colour", pattern.colour);
+            known(&path, "period", pattern.period);
+            known(&path, "flashes", pattern.flashes);
+            known(&path, "pause", pattern.pause);
+        }
+        fact(&path, "state", row.state);
+        fact(&path, "meaning", row.meaning);
+        fact(&path, "origin", row.origin.as_str());
+        cite(&path, row.cite);
+    }
+    cite(path, table.cite);
+    list(path, "erratum", table.errata);
+}
+
+fn dump_switches(path: &str, group: &SwitchGroup) {
+    fact(path, "name", group.name);
+    list(path, "label", group.labels);
+    list(path, "weight", group.weights);
+    if let Some((first, last)) = group.valid {
+        list(path, "valid", [first, last]);
+    }
+    fact(path, "unit", group.unit);
+    list(path, "sets", group.sets.iter().map(code_ref));
+    for (position, row) in group.rows.iter().enumerate() {
+        let path = format!("{path}/row/{position}");
+        fact(&path, "value", row.value);
+        known(&path, "number", row.number);
+        fact(&path, "on", row.on);
+        fact(&path, "either", row.either);
+    }
+    list(path, "note", group.notes);
+    fact(path, "origin", group.origin.as_str());
+    cite(path, group.cite);
+    list(path, "erratum", group.errata);
 }
 
 fn dump_erratum(path: &str, erratum: &Erratum) {

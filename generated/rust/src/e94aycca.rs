@@ -15,8 +15,12 @@ pub mod bits;
 pub mod codes;
 pub mod errata;
 pub mod errors;
+pub mod indicators;
+pub mod numbers;
 pub mod objects;
 pub mod selections;
+pub mod switches;
+pub mod telegrams;
 
 use crate::types::*;
 
@@ -51,5 +55,7 @@ pub const DEVICE: Device = Device {
     codes: codes::TABLE,
     objects: objects::TABLE,
     errors: &[errors::device::TABLE, errors::emergency::TABLE, errors::sdo_abort::TABLE],
+    indicators: indicators::TABLES,
+    switches: switches::GROUPS,
     errata: errata::TABLE,
 };

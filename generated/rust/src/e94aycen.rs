@@ -13,7 +13,10 @@
 pub mod codes;
 pub mod errata;
 pub mod errors;
+pub mod indicators;
+pub mod numbers;
 pub mod selections;
+pub mod telegrams;
 
 use crate::types::*;
 
@@ -43,5 +46,7 @@ pub const DEVICE: Device = Device {
     codes: codes::TABLE,
     objects: ObjectTable::EMPTY,
     errors: &[errors::gci::TABLE],
+    indicators: indicators::TABLES,
+    switches: &[],
     errata: errata::TABLE,
 };

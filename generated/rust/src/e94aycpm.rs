@@ -15,8 +15,12 @@ pub mod bits;
 pub mod codes;
 pub mod errata;
 pub mod errors;
+pub mod indicators;
+pub mod numbers;
 pub mod objects;
 pub mod selections;
+pub mod switches;
+pub mod telegrams;
 
 use crate::types::*;
 
@@ -46,5 +50,7 @@ pub const DEVICE: Device = Device {
     codes: codes::TABLE,
     objects: objects::TABLE,
     errors: &[errors::device::TABLE, errors::dpv0::TABLE, errors::dpv1::TABLE],
+    indicators: indicators::TABLES,
+    switches: switches::GROUPS,
     errata: errata::TABLE,
 };

@@ -16,6 +16,8 @@ extern crate std;
 #[macro_use]
 mod macros;
 
+pub mod cob_ids;
+pub mod codec;
 pub mod drives;
 pub mod types;
 

@@ -14,6 +14,7 @@ pub mod errata;
 pub mod errors;
 pub mod objects;
 pub mod selections;
+pub mod telegrams;
 
 use crate::types::*;
 
@@ -40,5 +41,7 @@ pub const DEVICE: Device = Device {
     codes: CodeTable::EMPTY,
     objects: objects::TABLE,
     errors: &[errors::emergency::TABLE, errors::sdo_abort::TABLE],
+    indicators: &[],
+    switches: &[],
     errata: errata::TABLE,
 };

@@ -104,6 +104,46 @@ impl Origin {
     }
 }
 
+/// What an LED does.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[non_exhaustive]
+pub enum Light {
+    /// Not said, or without meaning.
+    Any,
+    /// Off.
+    Off,
+    /// On.
+    On,
+    /// Flickering.
+    Flicker,
+    /// Lit or flickering; the manual draws no line between the two.
+    OnOrFlicker,
+    /// On and off for the same time.
+    Blink,
+    /// Flashes and a pause.
+    Flash,
+}
+
+impl Light {
+    /// All variants.
+    pub const ALL: &'static [Self] =
+        &[Self::Any, Self::Off, Self::On, Self::Flicker, Self::OnOrFlicker, Self::Blink, Self::Flash];
+
+    /// Word for it in the manuals and in the other artifacts of drivespec.
+    #[must_use]
+    pub const fn as_str(self) -> &'static str {
+        match self {
+            Self::Any => "any",
+            Self::Off => "off",
+            Self::On => "on",
+            Self::Flicker => "flicker",
+            Self::OnOrFlicker => "on_or_flicker",
+            Self::Blink => "blink",
+            Self::Flash => "flash",
+        }
+    }
+}
+
 /// List that an object belongs to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
@@ -231,6 +271,17 @@ impl DataType {
     pub const fn is_signed(self) -> bool {
         matches!(self, Self::Integer8 | Self::Integer16 | Self::Integer32)
     }
+
+    /// Lowest and highest value, as far as an `i64` goes; `None` for types of variable length.
+    #[must_use]
+    pub const fn limits(self) -> Option<(i64, i64)> {
+        match (self.bits() as u32, self.is_signed()) {
+            (0, _) => None,
+            (bits, true) => Some((i64::MIN >> (i64::BITS - bits), i64::MAX >> (i64::BITS - bits))),
+            (i64::BITS, false) => Some((0, i64::MAX)),
+            (bits, false) => Some((0, i64::MAX >> (i64::BITS - 1 - bits))),
+        }
+    }
 }
 
 /// A raw value that a selection list of the manual does not hold.
@@ -249,6 +300,20 @@ impl<T: fmt::Display> fmt::Display for UnknownValue<T> {
 
 #[cfg(feature = "std")]
 impl<T: fmt::Debug + fmt::Display> std::error::Error for UnknownValue<T> {}
+
+/// A value that a code cannot take.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[non_exhaustive]
+pub struct OutOfRange;
+
+impl fmt::Display for OutOfRange {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.write_str("the code cannot take this value")
+    }
+}
+
+#[cfg(feature = "std")]
+impl std::error::Error for OutOfRange {}
 
 /// Place in a manual.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -366,6 +431,15 @@ impl NodeRelative {
     #[must_use]
     pub const fn at(self, node: u8) -> u32 {
         self.base + node as u32
+    }
+
+    /// Node address whose value this is, `None` where no address gives it.
+    #[must_use]
+    pub const fn node(self, value: u32) -> Option<u8> {
+        match value.checked_sub(self.base) {
+            Some(node @ 1..=127) => Some(node as u8),
+            _ => None,
+        }
     }
 }
 
@@ -532,6 +606,39 @@ impl Code {
             position += 1;
         }
         None
+    }
+
+    /// `raw` where it lies in the range and fits the data type.
+    ///
+    /// # Errors
+    ///
+    /// The code cannot take the value, or is a text.
+    pub fn check(&self, raw: i64) -> Result<i64, OutOfRange> {
+        let (low, high) = self.data_type.limits().ok_or(OutOfRange)?;
+        let inside = low <= raw && raw <= high && self.range.map_or(true, |range| range.contains(raw));
+        inside.then_some(raw).ok_or(OutOfRange)
+    }
+
+    /// Wire value of a physical value: times the scaling factor, rounded to the nearest number, halves away from 0.
+    ///
+    /// # Errors
+    ///
+    /// The code cannot take the value, or is a text.
+    pub fn wire(&self, physical: f64) -> Result<i64, OutOfRange> {
+        let scaled = physical * f64::from(self.scaling.unwrap_or(1));
+        let bound = i64::MAX as f64;
+        if scaled.is_nan() || scaled <= -bound || scaled >= bound {
+            return Err(OutOfRange);
+        }
+        let whole = scaled as i64;
+        let rest = scaled - whole as f64;
+        self.check(whole + i64::from(rest >= 0.5) - i64::from(rest <= -0.5))
+    }
+
+    /// Physical value of a wire value: divided by the scaling factor.
+    #[must_use]
+    pub fn physical(&self, raw: i64) -> f64 {
+        raw as f64 / f64::from(self.scaling.unwrap_or(1))
     }
 }
 
@@ -731,6 +838,25 @@ pub struct Slot {
     pub error_offset: i64,
 }
 
+impl Slot {
+    /// Whether the code of that number belongs to the slot.
+    #[must_use]
+    pub const fn contains(&self, number: u16) -> bool {
+        self.first_code <= number && number <= self.last_code
+    }
+
+    /// Number in this slot of the code that has `number` in the first slot.
+    #[must_use]
+    pub const fn number(&self, number: u16) -> Option<u16> {
+        let moved = number as i32 + self.code_offset;
+        if self.first_code as i32 <= moved && moved <= self.last_code as i32 {
+            Some(moved as u16)
+        } else {
+            None
+        }
+    }
+}
+
 /// What a device does on CANopen beyond its objects.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct CanOpen {
@@ -774,6 +900,195 @@ pub struct Drive {
     pub commands: &'static [Choice],
 }
 
+impl Drive {
+    /// Index of a code on the bus.
+    #[must_use]
+    pub const fn index(&self, number: u16) -> Option<u16> {
+        self.index_base.checked_sub(number)
+    }
+
+    /// Number of the code that an index on the bus stands for.
+    #[must_use]
+    pub const fn number(&self, index: u16) -> Option<u16> {
+        self.index_base.checked_sub(index)
+    }
+}
+
+/// An LED.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Led {
+    /// Label on the module.
+    pub label: &'static str,
+    /// Colour.
+    pub colour: &'static str,
+    /// What it shows, empty where nothing is printed.
+    pub name: &'static str,
+}
+
+/// What an LED does.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Pattern {
+    /// Kind of light.
+    pub light: Light,
+    /// Colour of an LED with several.
+    pub colour: Option<&'static str>,
+    /// Milliseconds after which a blinking LED changes.
+    pub period: Option<u32>,
+    /// Number of flashes.
+    pub flashes: Option<u32>,
+    /// Milliseconds of darkness after the flashes.
+    pub pause: Option<u32>,
+}
+
+impl Pattern {
+    /// A kind of light and nothing else.
+    #[must_use]
+    pub const fn of(light: Light) -> Self {
+        Self { light, colour: None, period: None, flashes: None, pause: None }
+    }
+
+    /// Whether `seen` shows this pattern; what the manual does not print does not matter.
+    #[must_use]
+    pub fn shows(&self, seen: &Self) -> bool {
+        self.light == Light::Any
+            || ((self.light == seen.light
+                || self.light == Light::OnOrFlicker && matches!(seen.light, Light::On | Light::Flicker))
+                && (self.colour.is_none() || self.colour == seen.colour)
+                && (self.period.is_none() || self.period == seen.period)
+                && (self.flashes.is_none() || self.flashes == seen.flashes)
+                && (self.pause.is_none() || self.pause == seen.pause))
+    }
+}
+
+/// A state that LEDs show.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct IndicatorRow {
+    /// What each LED of the table does, in their order.
+    pub patterns: &'static [Pattern],
+    /// State.
+    pub state: &'static str,
+    /// What it means.
+    pub meaning: &'static str,
+    /// How the fact came to be known.
+    pub origin: Origin,
+    /// Where it stands.
+    pub cite: Cite,
+}
+
+/// LEDs that are read together.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct IndicatorTable {
+    /// Id.
+    pub id: &'static str,
+    /// Name.
+    pub name: &'static str,
+    /// The LEDs.
+    pub leds: &'static [Led],
+    /// What they show.
+    pub rows: &'static [IndicatorRow],
+    /// Where it stands.
+    pub cite: Cite,
+    /// Ids of the errata that concern it.
+    pub errata: &'static [&'static str],
+}
+
+impl IndicatorTable {
+    /// State that the LEDs show; `seen` holds one pattern for each LED.
+    #[must_use]
+    pub fn state(&self, seen: &[Pattern]) -> Option<&'static IndicatorRow> {
+        if seen.len() != self.leds.len() {
+            return None;
+        }
+        self.rows.iter().find(|row| row.patterns.iter().zip(seen).all(|(pattern, seen)| pattern.shows(seen)))
+    }
+}
+
+/// A printed position of DIP switches; bit n of a mask is switch n of [`SwitchGroup::labels`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct SwitchRow {
+    /// What is set, as printed.
+    pub value: &'static str,
+    /// The same as a number, where it is one.
+    pub number: Option<u32>,
+    /// Switches that are ON.
+    pub on: u32,
+    /// Switches that do not matter.
+    pub either: u32,
+}
+
+/// DIP switches that set one thing; bit n of a mask is switch n of `labels`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct SwitchGroup {
+    /// Id.
+    pub id: &'static str,
+    /// Name.
+    pub name: &'static str,
+    /// Labels of the switches.
+    pub labels: &'static [&'static str],
+    /// Weight of each switch where the value is the sum of those that are ON, else empty.
+    pub weights: &'static [u32],
+    /// First and last valid sum.
+    pub valid: Option<(u32, u32)>,
+    /// Unit of the value, empty where none is printed.
+    pub unit: &'static str,
+    /// Codes that show or hold the value.
+    pub sets: &'static [CodeRef],
+    /// Printed positions.
+    pub rows: &'static [SwitchRow],
+    /// Notes.
+    pub notes: &'static [&'static str],
+    /// How the fact came to be known.
+    pub origin: Origin,
+    /// Where it stands.
+    pub cite: Cite,
+    /// Ids of the errata that concern it.
+    pub errata: &'static [&'static str],
+}
+
+impl SwitchGroup {
+    /// Printed row of a position, `on` being the mask of the switches that are ON.
+    #[must_use]
+    pub fn row(&self, on: u32) -> Option<&'static SwitchRow> {
+        self.rows.iter().find(|row| row.on == on & !row.either)
+    }
+
+    /// Value of a position, `None` where it sets no number.
+    #[must_use]
+    pub fn value(&self, on: u32) -> Option<u32> {
+        if self.weights.is_empty() {
+            return self.row(on)?.number;
+        }
+        let weights = self.weights.iter().enumerate();
+        let sum = weights.filter(|(switch, _)| on >> switch & 1 == 1).map(|(_, weight)| weight).sum();
+        self.is_valid(sum).then_some(sum)
+    }
+
+    /// Mask of the switches to turn ON for a value, `None` where no position sets it.
+    #[must_use]
+    pub fn switches(&self, value: u32) -> Option<u32> {
+        if self.weights.is_empty() {
+            return self.rows.iter().find(|row| row.number == Some(value)).map(|row| row.on);
+        }
+        let masks = 0..1u32 << self.weights.len();
+        masks.into_iter().find(|mask| self.value(*mask) == Some(value))
+    }
+
+    fn is_valid(&self, sum: u32) -> bool {
+        self.valid.map_or(true, |(first, last)| first <= sum && sum <= last)
+    }
+}
+
+/// A COB-ID of the predefined connection set.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct CobId {
+    /// Name.
+    pub name: &'static str,
+    /// COB-ID by node address.
+    pub id: NodeRelative,
+    /// Objects that hold it.
+    pub objects: &'static [ObjectRef],
+}
+
 /// A device with everything that its manual says.
 #[derive(Clone, Copy, Debug)]
 pub struct Device {
@@ -805,8 +1120,20 @@ pub struct Device {
     pub objects: ObjectTable,
     /// Error numbers, a table for each kind.
     pub errors: &'static [ErrorTable],
+    /// LEDs.
+    pub indicators: &'static [IndicatorTable],
+    /// DIP switches.
+    pub switches: &'static [SwitchGroup],
     /// Ledger of what the manual prints wrong.
     pub errata: &'static [Erratum],
+}
+
+impl Device {
+    /// Slot that the code of that number belongs to, `None` for codes of the base drive.
+    #[must_use]
+    pub fn slot_of(&self, number: u16) -> Option<&'static Slot> {
+        self.slots.iter().find(|slot| slot.contains(number))
+    }
 }
 
 /// Codes in ascending order of their numbers.
@@ -865,6 +1192,12 @@ impl CodeTable {
     #[must_use]
     pub fn get_by_index(&self, index: u16) -> Option<&'static Code> {
         self.index_base.checked_sub(index).and_then(|number| self.get(number))
+    }
+
+    /// Code of that name, of that slot alone where one is given.
+    #[must_use]
+    pub fn find(&self, name: &str, slot: Option<&str>) -> Option<&'static Code> {
+        self.entries.iter().find(|code| code.name == name && (slot.is_none() || code.slot == slot))
     }
 
     /// All codes.

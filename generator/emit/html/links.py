@@ -69,6 +69,11 @@ def tables_page(device: Device) -> str:
     return f"{device.id}-tables.html"
 
 
+def files_page(device: Device) -> str:
+    """Page of a device with its files for bus masters."""
+    return f"{device.id}-files.html"
+
+
 class Links:
     """Where the facts of one device stand, and which of them belong together, as seen from one of its pages."""
 

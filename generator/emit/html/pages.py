@@ -8,25 +8,33 @@ from generator.emit.html.codes import code_group
 from generator.emit.html.coverage import Coverage, coverage, edition, listed_sources
 from generator.emit.html.drive import DriveSection, drive_section
 from generator.emit.html.errors import error_group
+from generator.emit.html.files import FileSection, file_names, file_sections, has_files
 from generator.emit.html.ledger import ledger_groups
-from generator.emit.html.links import Links, ledger_page, main_page, tables_page
+from generator.emit.html.links import Links, files_page, ledger_page, main_page, tables_page
 from generator.emit.html.objects import object_group
 from generator.emit.html.panel import led_group, switch_group
 from generator.emit.html.tables import formula_group, table_group
 from generator.emit.html.telegrams import example_group, layout_group
-from generator.emit.html.text import COVERAGE, Piece, Prose, joined, manual_id, manual_link, through
+from generator.emit.html.text import COVERAGE, NONE, Piece, Prose, joined, manual_id, manual_link, through
 from generator.model import Code, CodeRef, Device, DictionaryObject, ErrorEntry, Manual, Model
 
 _OBJECT_KINDS = {"canopen": "CANopen object dictionary", "profidrive": "PROFIdrive parameters"}
-_DEVICES = ("Device", "Type", "Bus", "Manual", "Edition", "Codes", "Objects", "Errors", "Errata")
+_DEVICES = ("Device", "Type", "Bus", "Manual", "Edition", "Codes", "Objects", "Errors", "Errata", "Files")
 _MAIN = "Codes, objects, errors"
 _TABLES = "LEDs, switches, telegrams, tables"
 _LEDGER = "Errata"
+_FILES = "Files for bus masters"
 _COVERAGE = "Coverage of the manual"
 _ERRATA = "What is printed wrong, what is used instead, why, and how sure that is."
 _LEDS = (
     "Each row gives a pattern in words, as the spec writes it, and drawn. "
     "Where the manual prints no time, the rhythm of the drawing is free."
+)
+_FILE_PARTS = (
+    ("contents", "What is in them"),
+    ("assumed", "What is assumed or left out, and why"),
+    ("corrected", "What the manual contradicts"),
+    ("import", "How to import them"),
 )
 _TELEGRAMS = "Offsets count bytes from 0; bit 0 is the least significant."
 
@@ -113,6 +121,20 @@ class SectionsPage:
 
 
 @dataclass(frozen=True, slots=True)
+class FilesPage:
+    """The page of a device with its files for bus masters."""
+
+    head: Head
+    nav: tuple[NavItem, ...]
+    sections: tuple[FileSection, ...]
+
+    @property
+    def release(self) -> Release:
+        """What the page says of itself."""
+        return self.head.release
+
+
+@dataclass(frozen=True, slots=True)
 class IndexPage:
     """Everything on the first page."""
 
@@ -163,6 +185,7 @@ def _device_row(device: Device) -> Row:
             edition(device.manual),
             *(str(len(facts)) for facts in counts),
             (Piece(str(len(device.errata)), ledger_page(device)),),
+            (Piece(str(len(file_names(device))), files_page(device)),) if has_files(device) else NONE,
         )
     )
 
@@ -198,6 +221,21 @@ def device_ledger_page(model: Model, device: Device) -> SectionsPage:
     )
 
 
+def device_files_page(model: Model, device: Device) -> FilesPage:
+    """The page of a device with its files for bus masters."""
+    sections = file_sections(Links(device, files_page(device)))
+    return FilesPage(
+        head=_head(model, device, _FILES, files_page(device)),
+        nav=tuple(map(_files_nav, sections)),
+        sections=sections,
+    )
+
+
+def _files_nav(section: FileSection) -> NavItem:
+    parts = tuple(NavItem(Piece(title, f"#{section.id}-{name}")) for name, title in _FILE_PARTS)
+    return NavItem(Piece(section.title, f"#{section.id}"), below=parts)
+
+
 def device_tables_page(model: Model, device: Device) -> SectionsPage:
     """The page of a device with what has a name alone: LEDs, switches, telegrams, tables and formulas."""
     links = Links(device, tables_page(device))
@@ -229,6 +267,7 @@ def _head(model: Model, device: Device, subtitle: str, page: str) -> Head:
         (_MAIN, main_page(device)),
         (_TABLES, tables_page(device)),
         (_LEDGER, ledger_page(device)),
+        *([(_FILES, files_page(device))] if has_files(device) else []),
         (_COVERAGE, f"{COVERAGE}#{manual_id(manual.id)}"),
     )
     return Head(

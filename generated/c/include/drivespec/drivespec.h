@@ -13,6 +13,7 @@
 #ifndef DRIVESPEC_DRIVESPEC_H
 #define DRIVESPEC_DRIVESPEC_H
 
+#include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 
@@ -248,39 +249,158 @@ static inline uint32_t drivespec_field_set(uint32_t value, uint32_t mask, unsign
     return (value & ~mask) | ((field << shift) & mask);
 }
 
+/** Value that follows the node address: identifiers of the predefined connection set and defaults with a base. */
+static inline uint32_t drivespec_at_node(uint32_t base, uint8_t node)
+{
+    return base + node;
+}
+
+/** Index of a code. */
+static inline uint16_t servo_drives_9400_index(uint16_t code)
+{
+    return (uint16_t)(SERVO_DRIVES_9400_INDEX_BASE - code);
+}
+
+/** Code at an index. */
+static inline uint16_t servo_drives_9400_code(uint16_t index)
+{
+    return (uint16_t)(SERVO_DRIVES_9400_INDEX_BASE - index);
+}
+
+/** response of an error number. */
+static inline uint32_t servo_drives_9400_error_response(uint32_t number)
+{
+    return drivespec_field_get(number, SERVO_DRIVES_9400_ERROR_RESPONSE_MASK, SERVO_DRIVES_9400_ERROR_RESPONSE_SHIFT);
+}
+
+/** instance of an error number. */
+static inline uint32_t servo_drives_9400_error_instance(uint32_t number)
+{
+    return drivespec_field_get(number, SERVO_DRIVES_9400_ERROR_INSTANCE_MASK, SERVO_DRIVES_9400_ERROR_INSTANCE_SHIFT);
+}
+
+/** module of an error number. */
+static inline uint32_t servo_drives_9400_error_module(uint32_t number)
+{
+    return drivespec_field_get(number, SERVO_DRIVES_9400_ERROR_MODULE_MASK, SERVO_DRIVES_9400_ERROR_MODULE_SHIFT);
+}
+
+/** error of an error number. */
+static inline uint32_t servo_drives_9400_error_error(uint32_t number)
+{
+    return drivespec_field_get(number, SERVO_DRIVES_9400_ERROR_ERROR_MASK, SERVO_DRIVES_9400_ERROR_ERROR_SHIFT);
+}
+
+/** Least and largest number that a data type holds, as far as 64 bits with sign hold it; false for strings. */
+static inline bool drivespec_type_limits(uint16_t type, int64_t *min, int64_t *max)
+{
+    switch (type) {
+    case DRIVESPEC_TYPE_UNSIGNED8:
+        *min = INT64_C(0);
+        *max = INT64_C(255);
+        return true;
+    case DRIVESPEC_TYPE_UNSIGNED16:
+        *min = INT64_C(0);
+        *max = INT64_C(65535);
+        return true;
+    case DRIVESPEC_TYPE_UNSIGNED32:
+        *min = INT64_C(0);
+        *max = INT64_C(4294967295);
+        return true;
+    case DRIVESPEC_TYPE_UNSIGNED64:
+        *min = INT64_C(0);
+        *max = INT64_C(9223372036854775807);
+        return true;
+    case DRIVESPEC_TYPE_INTEGER8:
+        *min = (-INT64_C(128));
+        *max = INT64_C(127);
+        return true;
+    case DRIVESPEC_TYPE_INTEGER16:
+        *min = (-INT64_C(32768));
+        *max = INT64_C(32767);
+        return true;
+    case DRIVESPEC_TYPE_INTEGER32:
+        *min = (-INT64_C(2147483648));
+        *max = INT64_C(2147483647);
+        return true;
+    default:
+        return false;
+    }
+}
+
+/** Whether a wire value is inside the range of a code or, where none is printed, of its data type. */
+static inline bool drivespec_in_range(const drivespec_code *code, int64_t wire)
+{
+    int64_t min = code->min;
+    int64_t max = code->max;
+
+    if (((code->has & DRIVESPEC_HAS_RANGE) == 0u) && !drivespec_type_limits(code->type, &min, &max)) {
+        return false;
+    }
+    return (min <= wire) && (wire <= max);
+}
+
+/** Wire value nearest to a value in its unit; false, and @p wire as it was, where it is out of range. */
+static inline bool drivespec_to_wire(const drivespec_code *code, double value, int64_t *wire)
+{
+    const double exact = value * ((code->scaling > 0u) ? (double)code->scaling : 1.0);
+
+    /* Also false for what is no number; the bounds are whole in double. */
+    if ((exact > -9.2e18) && (exact < 9.2e18)) {
+        const int64_t nearest = (int64_t)((exact < 0.0) ? exact - 0.5 : exact + 0.5);
+        if (drivespec_in_range(code, nearest)) {
+            *wire = nearest;
+            return true;
+        }
+    }
+    return false;
+}
+
+/** Value in its unit; false, and @p value as it was, where the wire value is out of range. */
+static inline bool drivespec_from_wire(const drivespec_code *code, int64_t wire, double *value)
+{
+    if (!drivespec_in_range(code, wire)) {
+        return false;
+    }
+    *value = (double)wire / ((code->scaling > 0u) ? (double)code->scaling : 1.0);
+    return true;
+}
+
+/** Whether two texts are equal; for machines without a library. */
+static inline bool drivespec_same_text(const char *a, const char *b)
+{
+    while ((*a != '\0') && (*a == *b)) {
+        a++;
+        b++;
+    }
+    return *a == *b;
+}
+
 /** Record of a code, NULL where there is none. @p codes ascend by number. */
 static inline const drivespec_code *drivespec_find_code(const drivespec_code *codes, size_t count, uint16_t number)
 {
-    size_t first = 0u;
-    size_t end = count;
+    const drivespec_code *found = codes;
 
-    while (first < end) {
-        const size_t middle = first + ((end - first) / 2u);
-        if (codes[middle].number < number) {
-            first = middle + 1u;
-        } else {
-            end = middle;
-        }
+    if (count == 0u) {
+        return NULL;
     }
-    return ((first < count) && (codes[first].number == number)) ? &codes[first] : NULL;
+    while (count > 1u) {
+        /* A product, since compilers turn a condition into a branch that is mispredicted. */
+        const size_t half = count / 2u;
+        found += (size_t)(found[half].number <= number) * half;
+        count -= half;
+    }
+    return (found->number == number) ? found : NULL;
 }
 
-/** Record of an error number, NULL where there is none. @p errors ascend by kind, then by number. */
-static inline const drivespec_error *drivespec_find_error(const drivespec_error *errors, size_t count, uint8_t kind,
-                                                          uint32_t number)
+/** First record of a name, NULL where there is none. */
+static inline const drivespec_code *drivespec_find_name(const drivespec_code *first, const drivespec_code *end,
+                                                        const char *name)
 {
-    size_t first = 0u;
-    size_t end = count;
-
-    while (first < end) {
-        const size_t middle = first + ((end - first) / 2u);
-        if ((errors[middle].kind < kind) || ((errors[middle].kind == kind) && (errors[middle].last < number))) {
-            first = middle + 1u;
-        } else {
-            end = middle;
-        }
+    while ((first != end) && !drivespec_same_text(first->name, name)) {
+        first++;
     }
-    return ((first < count) && (errors[first].kind == kind) && (errors[first].first <= number)) ? &errors[first] : NULL;
+    return (first != end) ? first : NULL;
 }
 
 /** Default of a subcode, NULL where there is none of its own. */

@@ -134,6 +134,44 @@ static inline const drivespec_code *e94aycca_find_code(uint16_t number)
     return drivespec_find_code(e94aycca_codes, E94AYCCA_CODE_COUNT, number);
 }
 
+/** Record of the code at an index, NULL where there is none. */
+static inline const drivespec_code *e94aycca_find_code_by_index(uint16_t index)
+{
+    return (index <= SERVO_DRIVES_9400_INDEX_BASE) ? e94aycca_find_code((uint16_t)(SERVO_DRIVES_9400_INDEX_BASE - index)) : NULL;
+}
+
+/** Record of the first code of a name behind @p after (NULL: of all), NULL where there is none. Slots share names. */
+static inline const drivespec_code *e94aycca_find_code_by_name(const char *name, const drivespec_code *after)
+{
+    const drivespec_code *const end = e94aycca_codes + E94AYCCA_CODE_COUNT;
+
+    return drivespec_find_name((after != NULL) ? after + 1 : e94aycca_codes, end, name);
+}
+
+/** Number that a code of any slot has in slot MXI1; other numbers stay as they are. */
+static inline uint16_t e94aycca_code_in_mxi1(uint16_t number)
+{
+    if ((E94AYCCA_MXI1_CODE_FIRST <= number) && (number <= E94AYCCA_MXI1_CODE_LAST)) {
+        return (uint16_t)(number - E94AYCCA_MXI1_CODE_OFFSET + E94AYCCA_MXI1_CODE_OFFSET);
+    }
+    if ((E94AYCCA_MXI2_CODE_FIRST <= number) && (number <= E94AYCCA_MXI2_CODE_LAST)) {
+        return (uint16_t)(number - E94AYCCA_MXI2_CODE_OFFSET + E94AYCCA_MXI1_CODE_OFFSET);
+    }
+    return number;
+}
+
+/** Number that a code of any slot has in slot MXI2; other numbers stay as they are. */
+static inline uint16_t e94aycca_code_in_mxi2(uint16_t number)
+{
+    if ((E94AYCCA_MXI1_CODE_FIRST <= number) && (number <= E94AYCCA_MXI1_CODE_LAST)) {
+        return (uint16_t)(number - E94AYCCA_MXI1_CODE_OFFSET + E94AYCCA_MXI2_CODE_OFFSET);
+    }
+    if ((E94AYCCA_MXI2_CODE_FIRST <= number) && (number <= E94AYCCA_MXI2_CODE_LAST)) {
+        return (uint16_t)(number - E94AYCCA_MXI2_CODE_OFFSET + E94AYCCA_MXI2_CODE_OFFSET);
+    }
+    return number;
+}
+
 /** Defaults of codes whose subcodes differ, by code and subcode. */
 static const drivespec_default e94aycca_defaults[] = {
     {INT64_C(0), NULL, UINT32_C(0x00000000), 615u, DRIVESPEC_HAS_DEFAULT, 1u, 1u},
@@ -256,13 +294,42 @@ static const drivespec_error e94aycca_errors[E94AYCCA_ERROR_COUNT] = {
     {"Dynamic generation of object directory not successful or no object directory available (e.g. object directory generated from file, generation not possible because of a file error)", UINT32_C(0x08000023), UINT32_C(0x08000023), DRIVESPEC_ERROR_SDO_ABORT, 255u},
 };
 
+/** Perfect hash of the single error numbers: seed by bucket, record by slot. */
+static const uint8_t e94aycca_error_seeds[] = {1u, 0u, 1u, 4u, 4u, 1u, 0u, 21u, 1u, 6u, 0u, 23u, 0u, 0u, 2u, 6u, 0u, 16u, 0u, 24u, 2u, 5u, 4u, 0u, 10u, 5u, 8u, 14u, 2u, 3u, 0u, 32u};
+static const uint8_t e94aycca_error_places[] = {0u, 75u, 78u, 7u, 21u, 6u, 0u, 59u, 0u, 0u, 0u, 0u, 41u, 0u, 0u, 61u, 70u, 0u, 56u, 0u, 0u, 0u, 0u, 23u, 40u, 0u, 66u, 20u, 0u, 2u, 22u, 57u, 0u, 0u, 0u, 67u, 4u, 49u, 43u, 73u, 72u, 3u, 0u, 0u, 53u, 24u, 68u, 34u, 32u, 33u, 35u, 31u, 14u, 15u, 36u, 12u, 19u, 69u, 55u, 13u, 44u, 18u, 11u, 37u, 39u, 17u, 64u, 16u, 0u, 38u, 0u, 0u, 30u, 0u, 0u, 63u, 45u, 0u, 79u, 60u, 0u, 10u, 0u, 42u, 77u, 1u, 65u, 50u, 58u, 54u, 0u, 0u, 48u, 0u, 0u, 51u, 0u, 0u, 74u, 0u, 62u, 0u, 28u, 0u, 8u, 0u, 0u, 76u, 0u, 71u, 47u, 0u, 0u, 0u, 46u, 52u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 26u, 27u, 0u, 0u};
+
+/** Records of runs of error numbers. */
+static const uint16_t e94aycca_error_runs[] = {5u, 9u, 25u, 29u};
+
 /**
  * Record of an error number, NULL where there is none.
  * Mask a reported DRIVESPEC_ERROR_DEVICE number with E94AYCCA_ERROR_MASK before.
  */
 static inline const drivespec_error *e94aycca_find_error(uint8_t kind, uint32_t number)
 {
-    return drivespec_find_error(e94aycca_errors, E94AYCCA_ERROR_COUNT, kind, number);
+    const drivespec_error *const errors = e94aycca_errors;
+
+    const uint32_t key = number ^ (uint32_t)(kind * UINT32_C(0x9E3779B1));
+    const uint32_t bucket = (uint32_t)(key * UINT32_C(0x9E3779B1)) >> 27u;
+    const uint32_t factor = UINT32_C(0xFFE6CC61) + 2u * (uint32_t)e94aycca_error_seeds[bucket];
+    const uint32_t slot = (uint32_t)((key ^ (key >> 15)) * factor) >> 25u;
+    const drivespec_error *const single = &errors[e94aycca_error_places[slot]];
+    if ((single->first == number) && (single->kind == kind)) {
+        return single;
+    }
+    for (size_t i = 0u; i < sizeof e94aycca_error_runs / sizeof e94aycca_error_runs[0]; i++) {
+        const drivespec_error *const run = &errors[e94aycca_error_runs[i]];
+        if ((run->kind == kind) && (run->first <= number) && (number <= run->last)) {
+            return run;
+        }
+    }
+    return NULL;
+}
+
+/** Record of a number as the drive reports it, whatever its response and instance; NULL where there is none. */
+static inline const drivespec_error *e94aycca_find_reported_error(uint32_t number)
+{
+    return e94aycca_find_error(DRIVESPEC_ERROR_DEVICE, number & E94AYCCA_ERROR_MASK);
 }
 
 /** Bit rates supported, in kbit/s. */

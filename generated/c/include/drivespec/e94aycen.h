@@ -548,6 +548,37 @@ typedef enum e94aycen_c14006_opt {
 /** @} */
 
 /**
+ * @name Data type in P0 / byte 3
+ * EDS94AYCEN-EN-9.0, 7.4 p. 41.
+ * Erratum gci-string-maximum: printed: byte 4 contains the number of the characters attached (7.4, note below the
+ * table of areas p. 41), 256 bytes (max.) (7.4, VISIBLE_STRING p. 41), 0x114 276 bytes (7.1, SIZE p. 39); used: at
+ * most 255 characters with a length in one byte.
+ * Erratum gci-octet-string: printed: When the data type VISIBLE_STRING is transmitted (7.4, note on byte 4 of P2 p.
+ * 41), 256 bytes (max.) (7.4, OCTET_STRING p. 41); used: byte 4 of P2 counts the attached bytes for both types.
+ * @{
+ */
+/** Data type in P0 / byte 3 */
+typedef enum e94aycen_gci_data_types {
+    E94AYCEN_GCI_DATA_TYPES_INTEGER_8 = 1, ///< INTEGER_8
+    E94AYCEN_GCI_DATA_TYPES_INTEGER_16 = 2, ///< INTEGER_16
+    E94AYCEN_GCI_DATA_TYPES_INTEGER_32 = 3, ///< INTEGER_32
+    E94AYCEN_GCI_DATA_TYPES_INTEGER_64 = 4, ///< INTEGER_64
+    E94AYCEN_GCI_DATA_TYPES_UNSIGNED_8 = 5, ///< UNSIGNED_8
+    E94AYCEN_GCI_DATA_TYPES_UNSIGNED_16 = 6, ///< UNSIGNED_16
+    E94AYCEN_GCI_DATA_TYPES_UNSIGNED_32 = 7, ///< UNSIGNED_32
+    E94AYCEN_GCI_DATA_TYPES_UNSIGNED_64 = 8, ///< UNSIGNED_64
+    E94AYCEN_GCI_DATA_TYPES_FLOATING_POINT = 9, ///< FLOATING_POINT
+    E94AYCEN_GCI_DATA_TYPES_VISIBLE_STRING = 10, ///< VISIBLE_STRING
+    E94AYCEN_GCI_DATA_TYPES_OCTET_STRING = 11, ///< OCTET_STRING
+    E94AYCEN_GCI_DATA_TYPES_BITFIELD_8 = 12, ///< BITFIELD_8
+    E94AYCEN_GCI_DATA_TYPES_BITFIELD_16 = 13, ///< BITFIELD_16
+    E94AYCEN_GCI_DATA_TYPES_BITFIELD_32 = 14, ///< BITFIELD_32
+    E94AYCEN_GCI_DATA_TYPES_FIXPOINT_16 = 15, ///< FIXPOINT_16
+    E94AYCEN_GCI_DATA_TYPES_FIXPOINT_32 = 16 ///< FIXPOINT_32
+} e94aycen_gci_data_types;
+/** @} */
+
+/**
  * @name 0x840B Invalid type
  * The type of the parameter is not valid.
  * EDS94AYCEN-EN-9.0, 7.6 p. 43.

@@ -43,6 +43,44 @@ static inline const drivespec_code *e94aycen_find_code(uint16_t number)
     return drivespec_find_code(e94aycen_codes, E94AYCEN_CODE_COUNT, number);
 }
 
+/** Record of the code at an index, NULL where there is none. */
+static inline const drivespec_code *e94aycen_find_code_by_index(uint16_t index)
+{
+    return (index <= SERVO_DRIVES_9400_INDEX_BASE) ? e94aycen_find_code((uint16_t)(SERVO_DRIVES_9400_INDEX_BASE - index)) : NULL;
+}
+
+/** Record of the first code of a name behind @p after (NULL: of all), NULL where there is none. Slots share names. */
+static inline const drivespec_code *e94aycen_find_code_by_name(const char *name, const drivespec_code *after)
+{
+    const drivespec_code *const end = e94aycen_codes + E94AYCEN_CODE_COUNT;
+
+    return drivespec_find_name((after != NULL) ? after + 1 : e94aycen_codes, end, name);
+}
+
+/** Number that a code of any slot has in slot MXI1; other numbers stay as they are. */
+static inline uint16_t e94aycen_code_in_mxi1(uint16_t number)
+{
+    if ((E94AYCEN_MXI1_CODE_FIRST <= number) && (number <= E94AYCEN_MXI1_CODE_LAST)) {
+        return (uint16_t)(number - E94AYCEN_MXI1_CODE_OFFSET + E94AYCEN_MXI1_CODE_OFFSET);
+    }
+    if ((E94AYCEN_MXI2_CODE_FIRST <= number) && (number <= E94AYCEN_MXI2_CODE_LAST)) {
+        return (uint16_t)(number - E94AYCEN_MXI2_CODE_OFFSET + E94AYCEN_MXI1_CODE_OFFSET);
+    }
+    return number;
+}
+
+/** Number that a code of any slot has in slot MXI2; other numbers stay as they are. */
+static inline uint16_t e94aycen_code_in_mxi2(uint16_t number)
+{
+    if ((E94AYCEN_MXI1_CODE_FIRST <= number) && (number <= E94AYCEN_MXI1_CODE_LAST)) {
+        return (uint16_t)(number - E94AYCEN_MXI1_CODE_OFFSET + E94AYCEN_MXI2_CODE_OFFSET);
+    }
+    if ((E94AYCEN_MXI2_CODE_FIRST <= number) && (number <= E94AYCEN_MXI2_CODE_LAST)) {
+        return (uint16_t)(number - E94AYCEN_MXI2_CODE_OFFSET + E94AYCEN_MXI2_CODE_OFFSET);
+    }
+    return number;
+}
+
 /** Defaults of codes whose subcodes differ, by code and subcode. */
 static const drivespec_default e94aycen_defaults[] = {
     {INT64_C(0), NULL, UINT32_C(0x00000000), 615u, DRIVESPEC_HAS_DEFAULT, 1u, 1u},
@@ -111,10 +149,24 @@ static const drivespec_error e94aycen_errors[E94AYCEN_ERROR_COUNT] = {
     {"Unknown client response", UINT32_C(0x00009014), UINT32_C(0x00009014), DRIVESPEC_ERROR_GCI, 255u},
 };
 
+/** Perfect hash of the single error numbers: seed by bucket, record by slot. */
+static const uint8_t e94aycen_error_seeds[] = {0u, 0u, 0u, 0u, 3u, 6u, 1u, 0u, 0u, 0u, 0u, 4u, 3u, 2u, 0u, 2u};
+static const uint8_t e94aycen_error_places[] = {24u, 0u, 0u, 33u, 0u, 0u, 0u, 5u, 3u, 0u, 0u, 26u, 0u, 0u, 30u, 31u, 0u, 0u, 15u, 25u, 0u, 13u, 19u, 0u, 10u, 0u, 23u, 0u, 0u, 27u, 1u, 0u, 0u, 16u, 2u, 0u, 0u, 20u, 18u, 0u, 0u, 7u, 8u, 0u, 28u, 0u, 0u, 14u, 32u, 6u, 0u, 0u, 17u, 22u, 0u, 0u, 4u, 9u, 0u, 12u, 11u, 21u, 0u, 29u};
+
 /** Record of an error number, NULL where there is none. */
 static inline const drivespec_error *e94aycen_find_error(uint8_t kind, uint32_t number)
 {
-    return drivespec_find_error(e94aycen_errors, E94AYCEN_ERROR_COUNT, kind, number);
+    const drivespec_error *const errors = e94aycen_errors;
+
+    const uint32_t key = number ^ (uint32_t)(kind * UINT32_C(0x9E3779B1));
+    const uint32_t bucket = (uint32_t)(key * UINT32_C(0x9E3779B3)) >> 28u;
+    const uint32_t factor = UINT32_C(0x3C55BFC3) + 2u * (uint32_t)e94aycen_error_seeds[bucket];
+    const uint32_t slot = (uint32_t)((key ^ (key >> 15)) * factor) >> 26u;
+    const drivespec_error *const single = &errors[e94aycen_error_places[slot]];
+    if ((single->first == number) && (single->kind == kind)) {
+        return single;
+    }
+    return NULL;
 }
 
 #endif

@@ -91,6 +91,44 @@ static inline const drivespec_code *e94aycpm_find_code(uint16_t number)
     return drivespec_find_code(e94aycpm_codes, E94AYCPM_CODE_COUNT, number);
 }
 
+/** Record of the code at an index, NULL where there is none. */
+static inline const drivespec_code *e94aycpm_find_code_by_index(uint16_t index)
+{
+    return (index <= SERVO_DRIVES_9400_INDEX_BASE) ? e94aycpm_find_code((uint16_t)(SERVO_DRIVES_9400_INDEX_BASE - index)) : NULL;
+}
+
+/** Record of the first code of a name behind @p after (NULL: of all), NULL where there is none. Slots share names. */
+static inline const drivespec_code *e94aycpm_find_code_by_name(const char *name, const drivespec_code *after)
+{
+    const drivespec_code *const end = e94aycpm_codes + E94AYCPM_CODE_COUNT;
+
+    return drivespec_find_name((after != NULL) ? after + 1 : e94aycpm_codes, end, name);
+}
+
+/** Number that a code of any slot has in slot MXI1; other numbers stay as they are. */
+static inline uint16_t e94aycpm_code_in_mxi1(uint16_t number)
+{
+    if ((E94AYCPM_MXI1_CODE_FIRST <= number) && (number <= E94AYCPM_MXI1_CODE_LAST)) {
+        return (uint16_t)(number - E94AYCPM_MXI1_CODE_OFFSET + E94AYCPM_MXI1_CODE_OFFSET);
+    }
+    if ((E94AYCPM_MXI2_CODE_FIRST <= number) && (number <= E94AYCPM_MXI2_CODE_LAST)) {
+        return (uint16_t)(number - E94AYCPM_MXI2_CODE_OFFSET + E94AYCPM_MXI1_CODE_OFFSET);
+    }
+    return number;
+}
+
+/** Number that a code of any slot has in slot MXI2; other numbers stay as they are. */
+static inline uint16_t e94aycpm_code_in_mxi2(uint16_t number)
+{
+    if ((E94AYCPM_MXI1_CODE_FIRST <= number) && (number <= E94AYCPM_MXI1_CODE_LAST)) {
+        return (uint16_t)(number - E94AYCPM_MXI1_CODE_OFFSET + E94AYCPM_MXI2_CODE_OFFSET);
+    }
+    if ((E94AYCPM_MXI2_CODE_FIRST <= number) && (number <= E94AYCPM_MXI2_CODE_LAST)) {
+        return (uint16_t)(number - E94AYCPM_MXI2_CODE_OFFSET + E94AYCPM_MXI2_CODE_OFFSET);
+    }
+    return number;
+}
+
 /** Defaults of codes whose subcodes differ, by code and subcode. */
 static const drivespec_default e94aycpm_defaults[] = {
     {INT64_C(0), NULL, UINT32_C(0x00000000), 615u, DRIVESPEC_HAS_DEFAULT, 1u, 1u},
@@ -163,13 +201,42 @@ static const drivespec_error e94aycpm_errors[E94AYCPM_ERROR_COUNT] = {
     {"Manufacturer-specific", UINT32_C(0x00000065), UINT32_C(0x000000FF), DRIVESPEC_ERROR_DPV1, 255u},
 };
 
+/** Perfect hash of the single error numbers: seed by bucket, record by slot. */
+static const uint8_t e94aycpm_error_seeds[] = {1u, 11u, 3u, 8u, 13u, 1u, 0u, 9u, 15u, 7u, 17u, 2u, 5u, 36u, 1u, 25u, 2u, 34u, 1u, 21u, 59u, 0u, 0u, 10u, 6u, 69u, 6u, 53u, 7u, 2u, 83u, 12u};
+static const uint8_t e94aycpm_error_places[] = {11u, 13u, 46u, 12u, 0u, 29u, 5u, 4u, 16u, 45u, 7u, 6u, 39u, 43u, 0u, 8u, 33u, 51u, 0u, 49u, 34u, 25u, 3u, 2u, 1u, 0u, 28u, 40u, 0u, 23u, 31u, 44u, 0u, 15u, 37u, 0u, 0u, 47u, 41u, 24u, 30u, 42u, 0u, 10u, 36u, 9u, 0u, 38u, 50u, 26u, 17u, 22u, 20u, 14u, 0u, 32u, 0u, 19u, 18u, 27u, 0u, 35u, 21u, 48u};
+
+/** Records of runs of error numbers. */
+static const uint16_t e94aycpm_error_runs[] = {52u, 53u};
+
 /**
  * Record of an error number, NULL where there is none.
  * Mask a reported DRIVESPEC_ERROR_DEVICE number with E94AYCPM_ERROR_MASK before.
  */
 static inline const drivespec_error *e94aycpm_find_error(uint8_t kind, uint32_t number)
 {
-    return drivespec_find_error(e94aycpm_errors, E94AYCPM_ERROR_COUNT, kind, number);
+    const drivespec_error *const errors = e94aycpm_errors;
+
+    const uint32_t key = number ^ (uint32_t)(kind * UINT32_C(0x9E3779B1));
+    const uint32_t bucket = (uint32_t)(key * UINT32_C(0x9E3779B1)) >> 27u;
+    const uint32_t factor = UINT32_C(0xFFE6CC61) + 2u * (uint32_t)e94aycpm_error_seeds[bucket];
+    const uint32_t slot = (uint32_t)((key ^ (key >> 15)) * factor) >> 26u;
+    const drivespec_error *const single = &errors[e94aycpm_error_places[slot]];
+    if ((single->first == number) && (single->kind == kind)) {
+        return single;
+    }
+    for (size_t i = 0u; i < sizeof e94aycpm_error_runs / sizeof e94aycpm_error_runs[0]; i++) {
+        const drivespec_error *const run = &errors[e94aycpm_error_runs[i]];
+        if ((run->kind == kind) && (run->first <= number) && (number <= run->last)) {
+            return run;
+        }
+    }
+    return NULL;
+}
+
+/** Record of a number as the drive reports it, whatever its response and instance; NULL where there is none. */
+static inline const drivespec_error *e94aycpm_find_reported_error(uint32_t number)
+{
+    return e94aycpm_find_error(DRIVESPEC_ERROR_DEVICE, number & E94AYCPM_ERROR_MASK);
 }
 
 #endif

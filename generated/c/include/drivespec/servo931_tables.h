@@ -33,10 +33,24 @@ static const drivespec_error servo931_errors[SERVO931_ERROR_COUNT] = {
     {"Data cannot be transferred/saved to the application due to current device state.", UINT32_C(0x08000022), UINT32_C(0x08000022), DRIVESPEC_ERROR_SDO_ABORT, 255u},
 };
 
+/** Perfect hash of the single error numbers: seed by bucket, record by slot. */
+static const uint8_t servo931_error_seeds[] = {1u, 0u, 1u, 2u, 2u, 0u, 5u, 1u};
+static const uint8_t servo931_error_places[] = {16u, 0u, 0u, 0u, 10u, 0u, 14u, 2u, 0u, 0u, 12u, 9u, 0u, 0u, 7u, 5u, 3u, 0u, 0u, 15u, 0u, 6u, 1u, 0u, 11u, 0u, 4u, 13u, 0u, 8u, 0u, 0u};
+
 /** Record of an error number, NULL where there is none. */
 static inline const drivespec_error *servo931_find_error(uint8_t kind, uint32_t number)
 {
-    return drivespec_find_error(servo931_errors, SERVO931_ERROR_COUNT, kind, number);
+    const drivespec_error *const errors = servo931_errors;
+
+    const uint32_t key = number ^ (uint32_t)(kind * UINT32_C(0x9E3779B1));
+    const uint32_t bucket = (uint32_t)(key * UINT32_C(0x9E3779B1)) >> 29u;
+    const uint32_t factor = UINT32_C(0xFFE6CC61) + 2u * (uint32_t)servo931_error_seeds[bucket];
+    const uint32_t slot = (uint32_t)((key ^ (key >> 15)) * factor) >> 27u;
+    const drivespec_error *const single = &errors[servo931_error_places[slot]];
+    if ((single->first == number) && (single->kind == kind)) {
+        return single;
+    }
+    return NULL;
 }
 
 /** Bit rates supported, in kbit/s. */

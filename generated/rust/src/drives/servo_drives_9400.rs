@@ -185,6 +185,60 @@ pub const ERROR_MODULE: BitField = BitField { low: 16, high: 25, label: "module"
 /// - Source: EDS94ARNE-EN-2.3, 8.6.1.5 p. 201, public document
 pub const ERROR_ERROR: BitField = BitField { low: 0, high: 15, label: "error" };
 
+/// An error number, made of fields.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct ErrorNumber(pub u32);
+
+impl ErrorNumber {
+    /// Field [`ERROR_RESPONSE`].
+    #[must_use]
+    pub const fn response(self) -> u32 {
+        ERROR_RESPONSE.extract(self.0)
+    }
+
+    /// The number with another value in field [`ERROR_RESPONSE`]; bits that the field has no room for are dropped.
+    #[must_use]
+    pub const fn with_response(self, value: u32) -> Self {
+        Self(ERROR_RESPONSE.insert(self.0, value))
+    }
+
+    /// Field [`ERROR_INSTANCE`].
+    #[must_use]
+    pub const fn instance(self) -> u32 {
+        ERROR_INSTANCE.extract(self.0)
+    }
+
+    /// The number with another value in field [`ERROR_INSTANCE`]; bits that the field has no room for are dropped.
+    #[must_use]
+    pub const fn with_instance(self, value: u32) -> Self {
+        Self(ERROR_INSTANCE.insert(self.0, value))
+    }
+
+    /// Field [`ERROR_MODULE`].
+    #[must_use]
+    pub const fn module(self) -> u32 {
+        ERROR_MODULE.extract(self.0)
+    }
+
+    /// The number with another value in field [`ERROR_MODULE`]; bits that the field has no room for are dropped.
+    #[must_use]
+    pub const fn with_module(self, value: u32) -> Self {
+        Self(ERROR_MODULE.insert(self.0, value))
+    }
+
+    /// Field [`ERROR_ERROR`].
+    #[must_use]
+    pub const fn error(self) -> u32 {
+        ERROR_ERROR.extract(self.0)
+    }
+
+    /// The number with another value in field [`ERROR_ERROR`]; bits that the field has no room for are dropped.
+    #[must_use]
+    pub const fn with_error(self, value: u32) -> Self {
+        Self(ERROR_ERROR.insert(self.0, value))
+    }
+}
+
 /// Everything that is known of the drive.
 pub const DRIVE: Drive = Drive {
     id: "servo-drives-9400",

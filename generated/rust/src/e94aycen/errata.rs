@@ -579,6 +579,30 @@ pub const TABLE: &[Erratum] = &[
         origin: "manual",
     },
     Erratum {
+        id: "gci-octet-string",
+        kind: "inconsistency",
+        about: &["layout:gci", "table:gci-data-types"],
+        printed: "",
+        used: "byte 4 of P2 counts the attached bytes for both types",
+        places: &[
+            ErratumPlace {
+                location: "7.4, note on byte 4 of P2",
+                page: Some(41),
+                manual: "EDS94AYCEN-EN-9.0",
+                printed: "When the data type VISIBLE_STRING is transmitted",
+            },
+            ErratumPlace {
+                location: "7.4, OCTET_STRING",
+                page: Some(41),
+                manual: "EDS94AYCEN-EN-9.0",
+                printed: "256 bytes (max.)",
+            },
+        ],
+        why: "Both types have up to 256 bytes and do not fit P3 and P4, but the note gives a count to one of them alone. Without a count the other could not be read; take what SIZE leaves as a check.",
+        confidence: "low",
+        origin: "manual",
+    },
+    Erratum {
         id: "gci-p0-titles",
         kind: "text",
         about: &["layout:gci", "telegram:write-c00105-request", "telegram:write-c00105-response"],
