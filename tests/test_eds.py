@@ -1,8 +1,12 @@
 """The EDS files: every fact against the model, the form of the bytes against what readers demand."""
 
+import configparser
 import importlib
 import logging
+import os
 import re
+import subprocess
+import sys
 import warnings
 from dataclasses import replace
 from fractions import Fraction
@@ -456,6 +460,34 @@ def _lint(path: Path) -> list[str]:
         if sound:
             dcf.Device(config, {"NODEID": NODE})
     return [str(warning.message) for warning in caught] + ([] if sound else ["refused"])
+
+
+def test_dcfgen_configures_a_master_for_the_file(cases: list[Case], tmp_path: Path) -> None:
+    """Lely's dcfgen makes a master of it: it expects the identity of the file and downloads a value to the slave."""
+    for case in cases:
+        folder = tmp_path / case.path.stem
+        folder.mkdir()
+        heartbeat = (0x1017, 0) in case.facts
+        sdo = "  sdo: [{index: 0x1017, sub_index: 0, value: 200}]\n" if heartbeat else ""
+        slave = f"slave:\n  dcf: {case.path}\n  node_id: {NODE}\n{sdo}"
+        (folder / "bus.yml").write_text(f"master:\n  node_id: 1\n{slave}")
+        command = [str(part) for part in (Path(sys.executable).parent / "dcfgen", "-d", folder, folder / "bus.yml")]
+        quiet = {**os.environ, "PYTHONWARNINGS": "ignore:pkg_resources"}
+        done = subprocess.run(command, capture_output=True, text=True, timeout=60, check=False, env=quiet)
+        assert (done.returncode, done.stderr) == (0, "")
+        master = read_master(folder / "master.dcf")
+        for index, sub in ((0x1F85, 1), (0x1F86, 2)):
+            identity = case.facts[0x1018, sub].default
+            if identity:
+                assert master[f"{index:X}Value"][str(NODE)] == f"0x{identity:08X}"
+        if heartbeat:
+            assert b"\x17\x10\x00\x02\x00\x00\x00\xc8\x00" in (folder / "slave.bin").read_bytes()
+
+
+def read_master(path: Path) -> configparser.ConfigParser:
+    parser = configparser.ConfigParser(interpolation=None)
+    parser.read(path, encoding="ascii")
+    return parser
 
 
 def test_other_readers_find_nothing_wrong(cases: list[Case], caplog: pytest.LogCaptureFixture) -> None:
