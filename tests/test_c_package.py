@@ -36,7 +36,7 @@ def done(*command: object, **environment: str) -> str:
 def installed(c: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Where the package is installed, after its own tests ran."""
     if shutil.which("cmake") is None:
-        pytest.skip("cmake is not on the PATH")
+        pytest.fail("install CMake (cmake is not on the PATH)")
     folder = tmp_path_factory.mktemp("c-package")
     build, prefix = folder / "build", folder / "prefix"
     done("cmake", "-S", c, "-B", build, f"-DCMAKE_INSTALL_PREFIX={prefix}")
@@ -82,7 +82,7 @@ def test_another_version_is_not_taken(model: Model, root: Path, installed: Path,
 
 def test_pkg_config(model: Model, root: Path, installed: Path, tmp_path: Path) -> None:
     if shutil.which("pkg-config") is None:
-        pytest.skip("pkg-config is not on the PATH")
+        pytest.fail("install pkg-config (it is not on the PATH)")
     search = {"PKG_CONFIG_PATH": str(installed / "share/pkgconfig")}
     assert done("pkg-config", "--modversion", "drivespec", **search).strip() == model.version
     flags = shlex.split(done("pkg-config", "--cflags", "drivespec", **search))
@@ -107,7 +107,7 @@ def test_the_example_of_the_readme(model: Model, c: Path, tmp_path: Path, compil
 
 def test_fuzz_targets_without_libfuzzer_are_left_out_with_a_word(c: Path, tmp_path: Path) -> None:
     if shutil.which("cmake") is None:
-        pytest.skip("cmake is not on the PATH")
+        pytest.fail("install CMake (cmake is not on the PATH)")
     said = done("cmake", "-S", c, "-B", tmp_path, "-DDRIVESPEC_FUZZ=ON", "-DCMAKE_C_COMPILER=cc")
     found = "DRIVESPEC_HAS_LIBFUZZER - Success" in said
     assert found or "no fuzz targets" in said
