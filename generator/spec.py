@@ -4,7 +4,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from generator.diagnostics import Problems, suggestion
-from generator.load import Map, read
+from generator.load import read
 from generator.model import Where
 from generator.schema import Schemas
 from generator.tree import SourceFile
@@ -124,5 +124,3 @@ def _require(spec: Spec, label: str, problems: Problems) -> None:
                 where = Where(f"{label}/{kind}s/{name}/{kind}.yaml", 1, 1)
                 problems.add("file-missing", where, f"the {kind} '{name}' has no {kind}.yaml")
 
-
-__all__ = ["Map", "Spec", "inputs", "load"]
