@@ -123,4 +123,3 @@ def _require(spec: Spec, label: str, problems: Problems) -> None:
             if kind not in files:
                 where = Where(f"{label}/{kind}s/{name}/{kind}.yaml", 1, 1)
                 problems.add("file-missing", where, f"the {kind} '{name}' has no {kind}.yaml")
-
