@@ -9,13 +9,23 @@ RUN := $(VENV)/bin/python
 SOURCES := $(shell find spec generator templates -type f -not -path '*/__pycache__/*' -not -name '.*')
 PIP := $(RUN) -m pip install --quiet --disable-pip-version-check
 
-.PHONY: all check test lint fuzz census clean help
-all: .build/generated
+.PHONY: all site serve check test lint fuzz census clean help
+all: .build/generated .build/site
 
 .build/generated: $(SOURCES) $(VENV)/ready
 	@mkdir -p .build
 	$(RUN) -m generator build
 	@touch $@
+
+site: .build/site ## build the reference in generated/html, for any static host or none
+
+.build/site: $(SOURCES) $(VENV)/ready
+	@mkdir -p .build
+	$(RUN) -m generator site
+	@touch $@
+
+serve: .build/site ## show the reference at http://localhost:8000
+	$(RUN) -m http.server --directory generated/html --bind 127.0.0.1 8000
 
 $(VENV)/ready: requirements.txt
 	@command -v $(PYTHON) >/dev/null || { echo "make: install Python 3.11 or later ($(PYTHON) is not on the PATH)" >&2; exit 1; }
@@ -34,7 +44,7 @@ check: $(VENV)/ready ## look for problems in spec/, write nothing
 census: $(VENV)/ready ## print every fact, one a line, and the coverage of each manual
 	@$(RUN) -m generator census
 
-test: .build/generated $(VENV)/ready-for-tests lint ## run the whole test suite
+test: .build/generated .build/site $(VENV)/ready-for-tests lint ## run the whole test suite
 	@command -v cc >/dev/null || { echo "make test: install a C compiler (cc is not on the PATH)" >&2; exit 1; }
 	@command -v c++ >/dev/null || { echo "make test: install a C++ compiler (c++ is not on the PATH)" >&2; exit 1; }
 	@command -v cmake >/dev/null || { echo "make test: install CMake (cmake is not on the PATH)" >&2; exit 1; }
@@ -57,7 +67,7 @@ fuzz: .build/generated ## fuzz the C codecs, ten seconds each device (clang with
 	done
 
 clean: ## remove the virtual environment and what builds and tests leave behind
-	rm -rf $(VENV) .build .pytest_cache .mypy_cache .ruff_cache .hypothesis generated/.state.json
+	rm -rf $(VENV) .build .pytest_cache .mypy_cache .ruff_cache .hypothesis generated/.state.json generated/html
 
 help: ## show this list
 	@echo "make            regenerate what is out of date in generated/"

@@ -1,4 +1,4 @@
-"""Command line: ``python -m generator build | check | census | dcf | explain``."""
+"""Command line: ``python -m generator build | site | check | census | dcf | explain``."""
 
 import argparse
 import json
@@ -17,6 +17,7 @@ The way of the data:  spec/*.yaml -> load -> elaborate -> check -> emit -> gener
 
 Examples:
   python -m generator build                     make what is missing or out of date
+  python -m generator site                      build the reference as a folder to be published
   python -m generator check                     look for problems, write nothing
   python -m generator check --format json       the same for an editor or CI
   python -m generator census > facts.txt        all facts, one a line; compare two with diff
@@ -36,8 +37,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return _explain(options.rule)
     if not options.spec.is_dir():
         parser.error(f"there is no folder {options.spec}")
-    if options.command == "build":
-        return _build(options.spec, options.out, options.format)
+    if options.command in ("build", "site"):
+        return _build(options.spec, options.out, options.format, site=options.command == "site")
     if options.command == "dcf":
         return _dcf(options)
     return _report(options.spec, options.format, census=options.command == "census")
@@ -58,6 +59,12 @@ def _parser() -> argparse.ArgumentParser:
     build = commands.add_parser("build", parents=[common], help="check the spec and write every artifact")
     build.add_argument(
         "--out", type=Path, default=_ROOT / "generated", help="folder of the artifacts (default: generated)"
+    )
+    site = commands.add_parser(
+        "site", parents=[common], help="check the spec and build the reference: one folder, for any host or none"
+    )
+    site.add_argument(
+        "--out", type=Path, default=_ROOT / "generated" / "html", help="folder of the site (default: generated/html)"
     )
     commands.add_parser("check", parents=[common], help="check the spec and write nothing")
     commands.add_parser(
@@ -99,7 +106,7 @@ def _label(spec: Path) -> str:
         return spec.as_posix()
 
 
-def _build(spec: Path, out: Path, style: str) -> int:
+def _build(spec: Path, out: Path, style: str, *, site: bool) -> int:
     sources = _digests(spec)
     state = digest(
         json.dumps([VERSION, _digests(_ROOT / "generator"), _digests(_ROOT / "templates"), sources]).encode()
@@ -108,15 +115,15 @@ def _build(spec: Path, out: Path, style: str) -> int:
         print(f"{out.name}: up to date")
         return 0
     from generator.diagnostics import DiagnosticsError
-    from generator.pipeline import compile_model, render
+    from generator.pipeline import compile_model, render, render_site
 
     try:
-        files = render(compile_model(spec, _label(spec)))
+        files = (render_site if site else render)(compile_model(spec, _label(spec)))
     except DiagnosticsError as error:
         return _show(error, style)
     changed = write(out, files, sources)
     (out / _STATE).write_text(json.dumps(state), encoding="ascii")
-    print(f"{out.name}: {len(files)} artifacts, {len(changed)} files changed")
+    print(f"{out.name}: {len(files)} files, {len(changed)} files changed")
     return 0
 
 

@@ -7,10 +7,13 @@ from pathlib import Path
 from generator.check import check
 from generator.diagnostics import Diagnostic, DiagnosticsError, Problems
 from generator.elaborate import elaborate
-from generator.emit import targets
+from generator.emit import html, targets
 from generator.emit.base import EmitError
 from generator.model import Model
 from generator.spec import load
+
+_OFFERED = ("eds", "xdd", "gsd", "json")
+"""Targets of which the site offers every file by itself."""
 
 
 def compile_model(folder: Path, label: str) -> Model:
@@ -42,6 +45,19 @@ def render(model: Model) -> dict[str, bytes]:
     if problems:
         raise DiagnosticsError(problems)
     return files
+
+
+def render_site(model: Model) -> dict[str, bytes]:
+    """The reference as a folder to be published: its pages, and below files/ the artifacts that they offer.
+
+    Raises:
+        DiagnosticsError: A target or the reference cannot express a fact.
+    """
+    artifacts = render(model)
+    with reported():
+        pages = {path: output.data() for path, output in html.render(model).items()}
+    offered = {f"files/{path}": data for path, data in artifacts.items() if path.split("/")[0] in _OFFERED}
+    return {**pages, **offered}
 
 
 @contextmanager

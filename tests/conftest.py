@@ -1,11 +1,15 @@
-"""Fixtures: the model of the real spec, and the folder of its artifacts."""
+"""Fixtures: the model of the real spec, the folders of its artifacts and of its site, and a browser on the site."""
 
+from collections.abc import Iterator
 from pathlib import Path
+from shutil import which
 
 import pytest
+from playwright.sync_api import Browser, BrowserContext, sync_playwright
+from visitor import FLAGS, Visitor
 
 from generator.model import Model
-from generator.pipeline import compile_model, render
+from generator.pipeline import compile_model, render, render_site
 from generator.write import write
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -29,3 +33,38 @@ def generated(model: Model, tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("generated")
     write(folder, render(model), {})
     return folder
+
+
+@pytest.fixture(scope="session")
+def site(model: Model, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The site, freshly built outside the repository."""
+    folder = tmp_path_factory.mktemp("site")
+    write(folder, render_site(model), {})
+    return folder
+
+
+@pytest.fixture(scope="session")
+def browser() -> Iterator[Browser]:
+    """Chromium without a window; the tests are left out, and say so, where there is none."""
+    path = which("chromium")
+    if path is None:
+        pytest.skip("left out: no Chromium on this machine (Debian: apt-get install chromium)")
+    with sync_playwright() as playwright:
+        yield playwright.chromium.launch(executable_path=path, args=list(FLAGS))
+
+
+@pytest.fixture
+def context(browser: Browser) -> Iterator[BrowserContext]:
+    """A fresh profile, its storage empty, with the right to use the clipboard."""
+    context = browser.new_context(viewport={"width": 1280, "height": 900})
+    context.grant_permissions(["clipboard-read", "clipboard-write"])
+    yield context
+    context.close()
+
+
+@pytest.fixture
+def visitor(context: BrowserContext, site: Path) -> Iterator[Visitor]:
+    """A tab; the test fails when its pages report an error or ask for anything outside the folder."""
+    found = Visitor(context.new_page(), site)
+    yield found
+    assert found.wrong == []

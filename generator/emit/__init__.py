@@ -5,8 +5,10 @@ from importlib import import_module
 
 from generator.emit.base import Target
 
-NAMES = ("json", "eds", "xdd", "gsd", "c", "python", "rust", "html")
-"""Names of the targets: the module in this package, the folder in templates/ and the folder in generated/."""
+NAMES = ("json", "eds", "xdd", "gsd", "c", "python", "rust")
+"""Names of the targets: the module in this package, the folder in templates/ and the folder in generated/.
+
+The reference, ``generator.emit.html``, is no target: it is built apart, as a folder to be published."""
 
 
 def targets() -> Iterator[Target]:

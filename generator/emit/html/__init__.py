@@ -1,42 +1,28 @@
-"""The reference as HTML: static pages that need no script, no server and nothing from elsewhere.
+"""The reference as HTML: static pages that need no server and nothing from elsewhere, and read well without a script.
 
-``index.html`` lists devices and sources, ``coverage.html`` says what became of each chapter of the sources.
-``<device>.html`` holds codes, objects and errors of a device, ``<device>-tables.html`` its LEDs, switches, telegrams,
-tables and formulas, ``<device>-errata.html`` the ledger of what is printed wrong, ``<device>-files.html`` what stands
-in its files for bus masters.  The views of entries know only through ``Links`` on which page a fact stands.
+``index.html`` is the first page, ``coverage.html`` says what became of each chapter of the sources.
+``<device>.html`` is the overview of a device, ``<device>-codes.html`` and the like are the parts of its reference, and
+``<device>-c13350.html`` is the page of one code, object or error.  All pages stand in one folder, so that every link
+is the name of a file.
 """
 
-from generator.emit.base import Output, Target
+from generator.emit.base import Output
+from generator.emit.environment import TEMPLATES
 from generator.emit.environment import render as fill
-from generator.emit.html.files import has_files
 from generator.emit.html.lamps import animations
-from generator.emit.html.links import files_page, ledger_page, main_page, tables_page
-from generator.emit.html.pages import (
-    coverage_page,
-    device_files_page,
-    device_ledger_page,
-    device_page,
-    device_tables_page,
-    index_page,
-)
-from generator.emit.html.text import COVERAGE
+from generator.emit.html.pages import pages
 from generator.model import Model
 
 
 def render(model: Model) -> dict[str, Output]:
-    """Pages of all devices, the first page, the page of the sources and the style sheet."""
-    outputs = {
-        "index.html": fill("html/index.html.j2", page=index_page(model)),
-        COVERAGE: fill("html/coverage.html.j2", page=coverage_page(model)),
-        "style.css": fill("html/style.css.j2", animations=animations(model)),
-    }
-    for device in model.devices:
-        outputs[main_page(device)] = fill("html/device.html.j2", page=device_page(model, device))
-        outputs[tables_page(device)] = fill("html/sections.html.j2", page=device_tables_page(model, device))
-        outputs[ledger_page(device)] = fill("html/sections.html.j2", page=device_ledger_page(model, device))
-        if has_files(device):
-            outputs[files_page(device)] = fill("html/files.html.j2", page=device_files_page(model, device))
+    """Every page, the style sheet and the scripts, by path below the folder of the site.
+
+    Raises:
+        EmitError: A file that the pages describe cannot be written.
+    """
+    outputs = {"style.css": fill("html/style.css.j2", animations=animations(model))}
+    for page in pages(model):
+        outputs[page.frame.path] = fill(f"html/{page.template}.html.j2", frame=page.frame, page=page.view)
+    for script in sorted((TEMPLATES / "html").glob("*.js")):
+        outputs[script.name] = script.read_text(encoding="utf-8")
     return {path: Output(text) for path, text in outputs.items()}
-
-
-TARGET = Target("html", render)

@@ -113,14 +113,9 @@ class Entry:
 
 @dataclass(frozen=True, slots=True)
 class Group:
-    """Entries of one kind below one heading, with a table that lists them."""
+    """Entries of one kind below one heading, with a table that lists them; none where each has a page of its own."""
 
     id: str
     title: str
     overview: Table
-    entries: tuple[Entry, ...]
-
-
-def anchored(anchor: Anchor) -> Prose:
-    """The number of an anchor as a link to its place."""
-    return (Piece(anchor.text, f"#{anchor.id}"),)
+    entries: tuple[Entry, ...] = ()

@@ -3,10 +3,11 @@
 from collections.abc import Iterator, Sequence
 from fractions import Fraction
 
-from generator.emit.html.blocks import Anchor, Entry, Fact, Group, Row, Table, anchored
-from generator.emit.html.links import Links, code_id
+from generator.emit.html.blocks import Anchor, Entry, Fact, Group, Row, Table
+from generator.emit.html.links import Links
 from generator.emit.html.lists import counts_on, from_to, runs, shortest_run, value_lists
 from generator.emit.html.notes import code_subject, located, notes
+from generator.emit.html.places import code_entries, code_id
 from generator.emit.html.text import (
     ELLIPSIS,
     NONE,
@@ -41,48 +42,18 @@ _Variants = Sequence[Code]
 
 def code_group(links: Links, name: str, title: str, codes: Sequence[Code]) -> Group:
     """Codes below one heading, those of several slots that differ in number alone drawn together."""
-    entries: dict[tuple[object, ...], list[Code]] = {}
-    for code in codes:
-        entries.setdefault(_content(code), []).append(code)
     return Group(
         id=name,
         title=title,
-        overview=Table("overview", _OVERVIEW, tuple(map(_overview_row, entries.values()))),
-        entries=tuple(code_entry(links, entry) for entry in entries.values()),
+        overview=Table("overview", _OVERVIEW, tuple(_overview_row(links, entry) for entry in code_entries(codes))),
     )
 
 
-def _overview_row(entry: _Variants) -> Row:
+def _overview_row(links: Links, entry: _Variants) -> Row:
     code = entry[0]
     cells = (code.name, code.type_name, _range(code), _brief_default(code), _access(code))
-    numbers = joined([anchored(_anchor(one)) for one in entry], " ")
+    numbers = joined([links.anchored(_anchor(one)) for one in entry], " ")
     return Row((numbers, *(cell or NONE for cell in cells)))
-
-
-def _content(code: Code) -> tuple[object, ...]:
-    """What the slots of one entry have in common; a code that differs in any of it gets an entry of its own."""
-    subcodes = tuple((s.number, s.name, s.default, s.follows, s.options, s.description) for s in code.subcodes)
-    return (
-        code.twin_of,
-        code.name,
-        code.type_name,
-        code.data_type,
-        code.length,
-        code.access,
-        code.scaling,
-        code.range,
-        code.default,
-        code.default_cite,
-        code.options,
-        code.bits,
-        code.fields,
-        subcodes,
-        code.since,
-        code.internal,
-        code.description,
-        code.shared_by,
-        code.origin,
-    )
 
 
 def _anchor(code: Code) -> Anchor:

@@ -2,9 +2,10 @@
 
 from collections.abc import Iterator, Sequence
 
-from generator.emit.html.blocks import Anchor, Bullets, Entry, Fact, Group, Item, ItemList, Row, Table, anchored
-from generator.emit.html.links import Links, error_id, error_text
+from generator.emit.html.blocks import Anchor, Bullets, Entry, Fact, Group, Item, ItemList, Row, Table
+from generator.emit.html.links import Links
 from generator.emit.html.notes import error_subject, notes
+from generator.emit.html.places import error_id, error_text
 from generator.emit.html.text import ELLIPSIS, NONE, Piece, Prose, joined, shown_origin, through
 from generator.model import Drive, ErrorEntry
 
@@ -22,20 +23,11 @@ _Variants = Sequence[ErrorEntry]
 
 
 def error_group(links: Links, name: str, kind: str, errors: Sequence[ErrorEntry]) -> Group:
-    """Errors of a kind below one heading, those of several slots that differ in number alone drawn together.
-
-    A plain error, of which there is nothing more to say than its row, has its anchor there and no entry.
-    """
-    entries: dict[tuple[object, ...], list[ErrorEntry]] = {}
-    for error in errors:
-        if not _is_plain(error):
-            first = links.error_twins(error)[0].number
-            entries.setdefault((first, *_content(error)), []).append(error)
+    """Errors of a kind below one heading, those of several slots that differ in number alone drawn together."""
     return Group(
         id=name,
         title=_KINDS.get(kind, kind),
         overview=_overview(links, errors),
-        entries=tuple(error_entry(links, entry) for entry in entries.values()),
     )
 
 
@@ -50,21 +42,16 @@ def _overview(links: Links, errors: Sequence[ErrorEntry]) -> Table:
     head += ["Source"] if with_sources else []
     rows = []
     for error in errors:
-        cells = [_numbered(error), _decimal(error), _overview_name(error)]
+        cells = [_numbered(links, error), _decimal(error), _overview_name(error)]
         if with_responses:
             cells += [_response(links.device.drive, error.response), links.codes(error.adjustable_in) or NONE]
         if with_registers:
             cells.append(error.register or NONE)
         if with_sources:
             cells.append(links.source(error.cite))
-        rows.append(_plain_row(links, error, cells) if _is_plain(error) else Row(tuple(cells)))
+        remarks = (links.prose(error.description),) if error.description and _is_plain(error) else ()
+        rows.append(Row(tuple(cells), remarks=remarks))
     return Table("overview errors", tuple(head), tuple(rows))
-
-
-def _plain_row(links: Links, error: ErrorEntry, cells: Sequence[Prose]) -> Row:
-    """Row of an error that has no entry: its anchor, and what else is said of it."""
-    remarks = (links.prose(error.description),) if error.description else ()
-    return Row(tuple(cells), id=error_id(error.kind, error.number), remarks=remarks)
 
 
 def _overview_name(error: ErrorEntry) -> Prose:
@@ -79,22 +66,6 @@ def _decimal(error: ErrorEntry) -> str:
 def _is_plain(error: ErrorEntry) -> bool:
     """Whether a row of the overview holds all that is known of the error."""
     return not (error.slot or error.causes or error.remedies or error.responses or error.adjustable_in or error.errata)
-
-
-def _content(error: ErrorEntry) -> tuple[object, ...]:
-    """What the slots of one entry have in common; an error that differs in any of it gets an entry of its own."""
-    return (
-        error.kind,
-        error.count,
-        error.name.replace(error.slot, "") if error.slot else error.name,
-        error.response,
-        error.responses,
-        error.register,
-        error.causes,
-        error.remedies,
-        error.description,
-        error.origin,
-    )
 
 
 def error_entry(links: Links, entry: _Variants) -> Entry:
@@ -165,9 +136,9 @@ def _anchor(error: ErrorEntry, number: int) -> Anchor:
     return Anchor(error_id(error.kind, number), error_text(error.kind, number))
 
 
-def _numbered(error: ErrorEntry) -> Prose:
+def _numbered(links: Links, error: ErrorEntry) -> Prose:
     """The number as a link to its place, with the end of its run."""
-    first = anchored(_anchor(error, error.number))
+    first = links.anchored(_anchor(error, error.number))
     last = error_text(error.kind, error.last)
     return first if error.count == 1 else (*first, f" {ELLIPSIS} {last}")
 

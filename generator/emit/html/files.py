@@ -104,15 +104,15 @@ def file_sections(links: Links) -> tuple[FileSection, ...]:
 
 
 def _eds_path(dictionary: ObjectDictionary) -> str:
-    return f"../eds/{eds.file_name(dictionary)}"
+    return f"files/eds/{eds.file_name(dictionary)}"
 
 
 def _xdd_path(dictionary: ObjectDictionary) -> str:
-    return f"../xdd/{xdd.file_name(dictionary)}"
+    return f"files/xdd/{xdd.file_name(dictionary)}"
 
 
 def _gsd_path(name: str) -> str:
-    return f"../gsd/{name}"
+    return f"files/gsd/{name}"
 
 
 def _download(path: str) -> Prose:

@@ -2,9 +2,10 @@
 
 from collections.abc import Iterator, Sequence
 
-from generator.emit.html.blocks import Anchor, Entry, Fact, Group, Row, Table, anchored
-from generator.emit.html.links import Links, erratum_id
+from generator.emit.html.blocks import Anchor, Entry, Fact, Group, Row, Table
+from generator.emit.html.links import Links
 from generator.emit.html.notes import is_slip, located
+from generator.emit.html.places import erratum_id
 from generator.emit.html.text import Prose, joined, noted, plain
 from generator.model import CodeRef, Erratum, ObjectRef
 
@@ -40,12 +41,12 @@ def ledger_groups(links: Links, errata: Sequence[Erratum]) -> tuple[Group, ...]:
 
 
 def _group(links: Links, name: str, title: str, errata: Sequence[Erratum]) -> Group:
-    overview = Table("overview", _OVERVIEW, tuple(map(_overview_row, errata)))
+    overview = Table("overview", _OVERVIEW, tuple(_overview_row(links, erratum) for erratum in errata))
     return Group(name, title, overview, tuple(erratum_entry(links, erratum) for erratum in errata))
 
 
-def _overview_row(erratum: Erratum) -> Row:
-    return Row((anchored(_anchor(erratum)), ", ".join(erratum.about_text), erratum.confidence))
+def _overview_row(links: Links, erratum: Erratum) -> Row:
+    return Row((links.anchored(_anchor(erratum)), ", ".join(erratum.about_text), erratum.confidence))
 
 
 def _anchor(erratum: Erratum) -> Anchor:

@@ -1,86 +1,32 @@
-"""Anchors, which are made of numbers and outlive names, and what on a device refers to what."""
+"""What on a device refers to what, and links between them."""
 
 from collections import defaultdict
 from collections.abc import Callable, Iterable, Sequence
+from copy import copy
 from itertools import pairwise
 from typing import TypeVar
 
+from generator.emit.html.blocks import Anchor
+from generator.emit.html.places import Places, code_id, erratum_id, error_id, error_text, named_id, object_id
 from generator.emit.html.text import ELLIPSIS, Piece, Prose, joined, manual_link, place_of, prose
 from generator.model import Cite, Code, CodeRef, Device, DictionaryObject, ErrorEntry, ErrorRef, ObjectRef, Slot
 from generator.model.erratum import Subject
 
 T = TypeVar("T")
 
-_ERROR_PREFIXES = {"device": "e", "emergency": "emcy", "sdo_abort": "abort"}
-_ERROR_DIGITS = {"emergency": 4, "dpv1": 4, "gci": 4}
-_LONG_DIGITS = 8
-_ERRATUM = "erratum-"
 _LONGEST_LIST = 2
 _WHOLE = -2
 """Stands for the subcode or sub-index of a reference that names none; far from 0, which would go on from -1."""
 
 
-def code_id(number: int, subcode: int | None = None) -> str:
-    """Anchor of a code or subcode: ``c13350``, ``c13350-3``."""
-    return f"c{number:05d}" + (f"-{subcode}" if subcode is not None else "")
-
-
-def object_id(entry: DictionaryObject, subindex: int | None = None) -> str:
-    """Anchor of an object or sub-index: ``i-1018``, ``i-1018-2``, ``pnu-918``."""
-    name = f"i-{entry.index:04x}" if entry.kind == "canopen" else f"pnu-{entry.index}"
-    return name + (f"-{subindex}" if subindex is not None else "")
-
-
-def error_text(kind: str, number: int) -> str:
-    """Error number as its list writes it, with the digits of its kind: ``0x009d0000``, ``0x8130``."""
-    return f"0x{number:0{_ERROR_DIGITS.get(kind, _LONG_DIGITS)}x}"
-
-
-def error_id(kind: str, number: int) -> str:
-    """Anchor of an error number: ``e-0x009d0000``; other kinds than the device's carry their own prefix."""
-    return f"{_ERROR_PREFIXES.get(kind, kind)}-{error_text(kind, number)}"
-
-
-def erratum_id(erratum: str) -> str:
-    """Anchor of an entry of the ledger."""
-    return f"{_ERRATUM}{erratum}"
-
-
-def named_id(kind: str, name: str, part: str = "") -> str:
-    """Anchor of a thing that has a name alone, and of a part of it: ``table-sub-d-pins``, ``layout-sdo.command``.
-
-    ``kind`` is as in the ledger: "led", "switch", "table", "formula", "layout" or "telegram".
-    """
-    return f"{kind}-{name}.{part}" if part else f"{kind}-{name}"
-
-
-def main_page(device: Device) -> str:
-    """Page of a device with its codes, objects and errors."""
-    return f"{device.id}.html"
-
-
-def ledger_page(device: Device) -> str:
-    """Page of a device with its errata."""
-    return f"{device.id}-errata.html"
-
-
-def tables_page(device: Device) -> str:
-    """Page of a device with its LEDs, switches, telegrams and tables."""
-    return f"{device.id}-tables.html"
-
-
-def files_page(device: Device) -> str:
-    """Page of a device with its files for bus masters."""
-    return f"{device.id}-files.html"
-
-
 class Links:
     """Where the facts of one device stand, and which of them belong together, as seen from one of its pages."""
 
-    def __init__(self, device: Device, page: str) -> None:
+    def __init__(self, device: Device, page: str = "") -> None:
         """Take in the facts of ``device``; ``page`` is the one on which the links stand."""
         self.device = device
         self._page = page
+        self._places = Places(device)
         self._named = {
             named_id(kind, entry.id)
             for kind, entries in (
@@ -122,15 +68,22 @@ class Links:
             for number in dict.fromkeys(ref.number for ref in error.adjustable_in):
                 self._set_in[number].append(error)
 
+    def on(self, page: str) -> "Links":
+        """The same links as seen from another page."""
+        other = copy(self)
+        other._page = page
+        return other
+
     def href(self, anchor: str) -> str:
         """Address of an anchor of this device."""
-        page = self._page_of(anchor)(self.device)
-        return f"#{anchor}" if page == self._page else f"{page}#{anchor}"
+        page = self._places.page(anchor)
+        if page == self._page:
+            return f"#{anchor}"
+        return page if self._places.is_first(anchor) else f"{page}#{anchor}"
 
-    def _page_of(self, anchor: str) -> Callable[[Device], str]:
-        if anchor.startswith(_ERRATUM):
-            return ledger_page
-        return tables_page if anchor.partition(".")[0] in self._named else main_page
+    def anchored(self, anchor: Anchor) -> Prose:
+        """The number of an anchor as a link to its place."""
+        return (Piece(anchor.text, self.href(anchor.id)),)
 
     def code_of(self, ref: CodeRef) -> Code | None:
         """Code of a reference, ``None`` where the manual of the device does not describe it."""

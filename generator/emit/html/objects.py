@@ -2,10 +2,11 @@
 
 from collections.abc import Callable, Iterator, Sequence
 
-from generator.emit.html.blocks import Anchor, Entry, Fact, Group, Row, Table, anchored
-from generator.emit.html.links import Links, object_id
+from generator.emit.html.blocks import Anchor, Entry, Fact, Group, Row, Table
+from generator.emit.html.links import Links
 from generator.emit.html.lists import counts_on, from_to, runs, shortest_run, value_lists
 from generator.emit.html.notes import notes, object_subject
+from generator.emit.html.places import object_id
 from generator.emit.html.text import (
     NONE,
     Piece,
@@ -31,14 +32,13 @@ def object_group(links: Links, name: str, title: str, entries: Sequence[Dictiona
         id=name,
         title=title,
         overview=Table("overview", _OVERVIEW, tuple(_overview_row(links, entry) for entry in entries)),
-        entries=tuple(object_entry(links, entry) for entry in entries),
     )
 
 
 def _overview_row(links: Links, entry: DictionaryObject) -> Row:
     codes = links.codes_of(entry)
     cells = (entry.name, entry.object_type, str(len(entry.subindexes)))
-    return Row((anchored(_anchor(entry)), *cells, links.codes(codes) or NONE))
+    return Row((links.anchored(_anchor(entry)), *cells, links.codes(codes) or NONE))
 
 
 def _anchor(entry: DictionaryObject) -> Anchor:

@@ -1,287 +1,258 @@
-"""Pages of the reference: the first page, the sources, and the pages of a device, which are composed of its entries."""
+"""Pages of the reference, composed of entries: the first page, the sources, and those of each device."""
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
+from functools import partial
 
-from generator.emit.html.blocks import Fact, Group, Row, Table
-from generator.emit.html.codes import code_group
+from generator.emit.html.blocks import Entry, Fact, Group, Row, Table
+from generator.emit.html.codes import code_entry, code_group
 from generator.emit.html.coverage import Coverage, coverage, edition, listed_sources
 from generator.emit.html.drive import DriveSection, drive_section
-from generator.emit.html.errors import error_group
+from generator.emit.html.errors import error_entry, error_group
 from generator.emit.html.files import FileSection, file_names, file_sections, has_files
+from generator.emit.html.frame import Frame, NavItem, coverage_item, device_frame, site_frame
 from generator.emit.html.ledger import ledger_groups
-from generator.emit.html.links import Links, files_page, ledger_page, main_page, tables_page
-from generator.emit.html.objects import object_group
+from generator.emit.html.links import Links
+from generator.emit.html.objects import object_entry, object_group
 from generator.emit.html.panel import led_group, switch_group
+from generator.emit.html.places import code_entries, code_id, error_entries, error_id, object_id, page_of
 from generator.emit.html.tables import formula_group, table_group
 from generator.emit.html.telegrams import example_group, layout_group
-from generator.emit.html.text import COVERAGE, NONE, Piece, Prose, joined, manual_id, manual_link, through
-from generator.model import Code, CodeRef, Device, DictionaryObject, ErrorEntry, Manual, Model
+from generator.emit.html.text import COVERAGE, NONE, Piece, joined, manual_link, plain, through
+from generator.model import Code, CodeRef, Device, DictionaryObject, ErrorEntry, Model
 
 _OBJECT_KINDS = {"canopen": "CANopen object dictionary", "profidrive": "PROFIdrive parameters"}
 _DEVICES = ("Device", "Type", "Bus", "Manual", "Edition", "Codes", "Objects", "Errors", "Errata", "Files")
-_MAIN = "Codes, objects, errors"
-_TABLES = "LEDs, switches, telegrams, tables"
-_LEDGER = "Errata"
-_FILES = "Files for bus masters"
-_COVERAGE = "Coverage of the manual"
-_ERRATA = "What is printed wrong, what is used instead, why, and how sure that is."
-_LEDS = (
-    "Each row gives a pattern in words, as the spec writes it, and drawn. "
-    "Where the manual prints no time, the rhythm of the drawing is free."
-)
-_FILE_PARTS = (
-    ("contents", "What is in them"),
-    ("assumed", "What is assumed or left out, and why"),
-    ("corrected", "What the manual contradicts"),
-    ("import", "How to import them"),
-)
-_TELEGRAMS = "Offsets count bytes from 0; bit 0 is the least significant."
+_TITLES = {
+    "": "Overview",
+    "codes": "Codes",
+    "objects": "Objects",
+    "errors": "Errors",
+    "leds": "LEDs",
+    "switches": "DIP switches",
+    "telegrams": "Telegrams",
+    "tables": "Tables",
+    "drive": "Base drive",
+    "errata": "Errata",
+    "files": "Files for bus masters",
+}
+"""Parts of the reference of a device in the order of its navigation."""
+_LEADS = {
+    "leds": "Each row gives a pattern in words, as the spec writes it, and drawn. "
+    "Where the manual prints no time, the rhythm of the drawing is free.",
+    "telegrams": "Offsets count bytes from 0; bit 0 is the least significant.",
+    "errata": "What is printed wrong, what is used instead, why, and how sure that is.",
+}
+_WITH_PAGES = ("codes", "objects", "errors")
+"""Parts whose entries have a page of their own each."""
 
 
 @dataclass(frozen=True, slots=True)
-class Release:
-    """What a page says of itself: version and date of the spec, and the manual that it is made from."""
+class Page:
+    """A page: its frame, the template that lays it out, and what it shows."""
 
-    version: str
-    date: str
-    origin: str
-
-
-@dataclass(frozen=True, slots=True)
-class NavItem:
-    """An entry of the navigation, with those below it; ``count`` is "" where nothing is counted."""
-
-    link: Piece
-    count: str = ""
-    below: tuple["NavItem", ...] = ()
+    frame: Frame
+    template: str
+    view: object
 
 
 @dataclass(frozen=True, slots=True)
-class Section:
-    """Groups of entries below one heading; ``lead`` says what is meant, "" where the title does.
+class PartView:
+    """Groups of entries; ``lead`` is "" where the title says enough.  ``blinks``: it has drawings that move."""
 
-    ``blinks``: it has drawings that move, which a reader can stop.
-    """
-
-    id: str
-    title: str
     lead: str
     groups: tuple[Group, ...]
-    blinks: bool = False
+    blinks: bool
 
 
 @dataclass(frozen=True, slots=True)
-class PageLink:
-    """A page of a device; ``href`` is "" for the page that shows the link."""
+class DeviceView:
+    """The overview of a device."""
 
-    text: str
-    href: str
-
-
-@dataclass(frozen=True, slots=True)
-class Head:
-    """What the pages of a device have in common; ``after`` names the manual."""
-
-    title: str
-    subtitle: str
-    release: Release
-    after: Prose
-    pages: tuple[PageLink, ...]
-
-
-@dataclass(frozen=True, slots=True)
-class DevicePage:
-    """The page of a device with its codes, objects and errors."""
-
-    head: Head
     facts: tuple[Fact, ...]
-    nav: tuple[NavItem, ...]
-    sections: tuple[Section, ...]
-    drive: DriveSection | None
-
-    @property
-    def release(self) -> Release:
-        """What the page says of itself."""
-        return self.head.release
 
 
 @dataclass(frozen=True, slots=True)
-class SectionsPage:
-    """A page of a device that is all sections of entries."""
+class EntryView:
+    """The page of one entry."""
 
-    head: Head
-    nav: tuple[NavItem, ...]
-    sections: tuple[Section, ...]
-
-    @property
-    def release(self) -> Release:
-        """What the page says of itself."""
-        return self.head.release
+    entry: Entry
 
 
 @dataclass(frozen=True, slots=True)
-class FilesPage:
-    """The page of a device with its files for bus masters."""
+class FilesView:
+    """Files of a device for bus masters."""
 
-    head: Head
-    nav: tuple[NavItem, ...]
     sections: tuple[FileSection, ...]
 
-    @property
-    def release(self) -> Release:
-        """What the page says of itself."""
-        return self.head.release
+
+@dataclass(frozen=True, slots=True)
+class DriveView:
+    """What is known of the base drive of a device."""
+
+    drive: DriveSection
 
 
 @dataclass(frozen=True, slots=True)
-class IndexPage:
+class IndexView:
     """Everything on the first page."""
 
-    release: Release
     devices: Table
     sources: Table
 
 
 @dataclass(frozen=True, slots=True)
-class CoveragePage:
+class CoverageView:
     """Everything on the page of the sources."""
 
-    release: Release
     coverage: Coverage
 
 
-def index_page(model: Model) -> IndexPage:
-    """The first page: devices and sources."""
-    return IndexPage(
-        release=_release(model, _manuals(model)),
-        devices=Table("devices", _DEVICES, tuple(map(_device_row, model.devices))),
-        sources=listed_sources(model),
-    )
+def pages(model: Model) -> Iterator[Page]:
+    """Every page of the reference."""
+    yield _index(model)
+    yield _coverage(model)
+    for device in model.devices:
+        yield from _device_pages(model, device)
 
 
-def coverage_page(model: Model) -> CoveragePage:
-    """The page of the sources."""
-    return CoveragePage(_release(model, _manuals(model)), coverage(model))
+def _index(model: Model) -> Page:
+    title = "Drive communication modules, transcribed"
+    names = ", ".join(device.title for device in model.devices)
+    frame = site_frame(model, "index.html", title, f"Codes, objects, errors, LEDs, switches and telegrams of {names}.")
+    view = IndexView(Table("devices", _DEVICES, tuple(map(_device_row, model.devices))), listed_sources(model))
+    return Page(frame, "index", view)
 
 
-def _manuals(model: Model) -> Iterable[Manual]:
-    return {device.manual.id: device.manual for device in model.devices}.values()
-
-
-def _release(model: Model, manuals: Iterable[Manual]) -> Release:
-    origin = "; ".join(f"{manual.title}, edition {manual.edition}" for manual in manuals)
-    return Release(model.version, model.date, origin)
+def _coverage(model: Model) -> Page:
+    title = "Coverage of the sources"
+    frame = site_frame(model, COVERAGE, title, "What became of every chapter of every manual, and what is lost.")
+    return Page(frame, "coverage", CoverageView(coverage(model)))
 
 
 def _device_row(device: Device) -> Row:
-    counts = (device.codes, device.objects, device.errors)
+    facts = {"codes": device.codes, "objects": device.objects, "errors": device.errors, "errata": device.errata}
     return Row(
         (
-            (Piece(device.title, main_page(device)), " ", Piece(_TABLES, tables_page(device), "small")),
+            (Piece(device.title, page_of(device)),),
             device.order_code,
             device.bus,
             (manual_link(device.manual.id),),
             edition(device.manual),
-            *(str(len(facts)) for facts in counts),
-            (Piece(str(len(device.errata)), ledger_page(device)),),
-            (Piece(str(len(file_names(device))), files_page(device)),) if has_files(device) else NONE,
+            *((Piece(str(len(found)), page_of(device, part)),) if found else NONE for part, found in facts.items()),
+            (Piece(str(len(file_names(device))), page_of(device, "files")),) if has_files(device) else NONE,
         )
     )
 
 
-def device_page(model: Model, device: Device) -> DevicePage:
-    """The page of a device."""
-    links = Links(device, main_page(device))
-    codes = Section("codes", "Codes", "", _code_groups(links, device.codes))
-    objects = Section("objects", "Objects", "", _object_groups(links, device.objects))
-    errors = Section("errors", "Errors", "", _error_groups(links, device.errors))
-    return DevicePage(
-        head=_head(model, device, "", main_page(device)),
-        facts=tuple(_facts(links, device)),
-        nav=(
-            _nav(codes, len(device.codes)),
-            _nav(objects, len(device.objects)),
-            _nav(errors, len(device.errors)),
-            *([NavItem(Piece("Base drive", "#drive"))] if device.drive else []),
-        ),
-        sections=(codes, objects, errors),
-        drive=drive_section(links, device.drive) if device.drive else None,
-    )
+def _device_pages(model: Model, device: Device) -> Iterator[Page]:
+    links = Links(device)
+    parts = {part: groups for part in _TITLES if (groups := _groups(links.on(page_of(device, part)), part))}
+    counts = {
+        "codes": len(device.codes),
+        "objects": len(device.objects),
+        "errors": len(device.errors),
+        "errata": len(device.errata),
+    }
+    known = {"", *parts, *(["drive"] if device.drive else []), *(["files"] if has_files(device) else [])}
+    nav = [
+        NavItem(title, page_of(device, part), str(counts.get(part, "")))
+        for part, title in _TITLES.items()
+        if part in known
+    ]
+    nav.append(coverage_item(device))
+    overview = f"{device.title} ({device.order_code}): codes, objects, errors, LEDs, switches and telegrams."
+    frame = device_frame(model, device, nav, title=device.title, description=overview)
+    yield Page(frame, "device", DeviceView(tuple(_facts(links.on(page_of(device)), device))))
+    for part, groups in parts.items():
+        title = _TITLES[part]
+        names = ", ".join(dict.fromkeys(group.title for group in groups))
+        frame = device_frame(
+            model, device, nav, part=part, title=title, description=f"{title} of the {device.title}: {names}."
+        )
+        yield Page(frame, "part", PartView(_LEADS.get(part, ""), groups, blinks=part == "leds"))
+        if part in _WITH_PAGES:
+            yield from _entry_pages(model, links, nav, part)
+    if device.drive:
+        frame = device_frame(
+            model, device, nav, part="drive", title=device.drive.title, description=f"{device.drive.title}: {overview}"
+        )
+        yield Page(frame, "drive", DriveView(drive_section(links.on(frame.path), device.drive)))
+    if has_files(device):
+        description = f"EDS, XDD and GSD files of the {device.title}: contents, assumptions, corrections and import."
+        frame = device_frame(model, device, nav, part="files", title=_TITLES["files"], description=description)
+        yield Page(frame, "files", FilesView(file_sections(links.on(frame.path))))
 
 
-def device_ledger_page(model: Model, device: Device) -> SectionsPage:
-    """The page of a device with the ledger of its errata."""
-    links = Links(device, ledger_page(device))
-    errata = Section("errata", "Errata", _ERRATA, ledger_groups(links, device.errata))
-    return SectionsPage(
-        head=_head(model, device, _LEDGER, ledger_page(device)),
-        nav=(_nav(errata, len(device.errata)),),
-        sections=(errata,),
-    )
+def _entry_pages(model: Model, links: Links, nav: Sequence[NavItem], part: str) -> Iterator[Page]:
+    """A page for every entry of a part, each with its neighbours in the list."""
+    device = links.device
+    entries = [(path, entry(links.on(path))) for path, entry in _entries(device, part)]
+    pieces = [Piece(_named(entry), path) for path, entry in entries]
+    around = zip([None, *pieces], [*pieces[1:], None], strict=False)
+    for (_, entry), piece, neighbours in zip(entries, pieces, around, strict=True):
+        frame = device_frame(
+            model,
+            device,
+            nav,
+            part=part,
+            entry=entry.anchors[0].id,
+            title=piece.text,
+            description=_described(entry, piece.text),
+            neighbours=neighbours,
+        )
+        yield Page(frame, "entry", EntryView(entry))
 
 
-def device_files_page(model: Model, device: Device) -> FilesPage:
-    """The page of a device with its files for bus masters."""
-    sections = file_sections(Links(device, files_page(device)))
-    return FilesPage(
-        head=_head(model, device, _FILES, files_page(device)),
-        nav=tuple(map(_files_nav, sections)),
-        sections=sections,
-    )
+def _entries(device: Device, part: str) -> Iterator[tuple[str, Callable[[Links], Entry]]]:
+    """Path and builder of the page of every entry of a part."""
+    match part:
+        case "codes":
+            for codes in code_entries(device.codes):
+                yield page_of(device, code_id(codes[0].number)), partial(code_entry, entry=codes)
+        case "objects":
+            for found in device.objects:
+                yield page_of(device, object_id(found)), partial(object_entry, entry=found)
+        case "errors":
+            for errors in error_entries(device, device.errors):
+                name = error_id(errors[0].kind, errors[0].number)
+                yield page_of(device, name), partial(error_entry, entry=errors)
 
 
-def _files_nav(section: FileSection) -> NavItem:
-    parts = tuple(NavItem(Piece(title, f"#{section.id}-{name}")) for name, title in _FILE_PARTS)
-    return NavItem(Piece(section.title, f"#{section.id}"), below=parts)
+def _named(entry: Entry) -> str:
+    """Numbers and name of an entry on one line."""
+    numbers = " / ".join(anchor.text for anchor in entry.anchors)
+    return f"{numbers} {entry.name}" if entry.name else numbers
 
 
-def device_tables_page(model: Model, device: Device) -> SectionsPage:
-    """The page of a device with what has a name alone: LEDs, switches, telegrams, tables and formulas."""
-    links = Links(device, tables_page(device))
-    leds = tuple(group for group in (led_group(links, device.indicators),) if group.entries)
-    switches = tuple(group for group in (switch_group(links, device.switches),) if group.entries)
-    telegrams = (layout_group(links, device.layouts), example_group(links, device.examples))
-    tables = tuple(group for group in (table_group(links, device.tables),) if group.entries)
-    formulas = tuple(group for group in (formula_group(links, device.formulas),) if group.entries)
-    sections = (
-        (Section("leds", "LEDs", _LEDS, leds, blinks=bool(leds)), len(device.indicators)),
-        (Section("switches", "DIP switches", "", switches), len(device.switches)),
-        (
-            Section("telegrams", "Telegrams", _TELEGRAMS, tuple(group for group in telegrams if group.entries)),
-            len(device.layouts) + len(device.examples),
-        ),
-        (Section("tables", "Tables", "", tables), len(device.tables)),
-        (Section("formulas", "Formulas", "", formulas), len(device.formulas)),
-    )
-    return SectionsPage(
-        head=_head(model, device, _TABLES, tables_page(device)),
-        nav=tuple(_nav(section, count) for section, count in sections),
-        sections=tuple(section for section, _ in sections),
-    )
+def _described(entry: Entry, name: str) -> str:
+    facts = ", ".join(f"{fact.label.lower()} {plain(fact.value)}" for fact in entry.facts if fact.value != NONE)
+    return " ".join(part for part in (f"{name}.", plain(entry.lead), facts) if part)
 
 
-def _head(model: Model, device: Device, subtitle: str, page: str) -> Head:
-    manual = device.manual
-    pages = (
-        (_MAIN, main_page(device)),
-        (_TABLES, tables_page(device)),
-        (_LEDGER, ledger_page(device)),
-        *([(_FILES, files_page(device))] if has_files(device) else []),
-        (_COVERAGE, f"{COVERAGE}#{manual_id(manual.id)}"),
-    )
-    return Head(
-        title=device.title,
-        subtitle=subtitle,
-        release=_release(model, [manual]),
-        after=(f"{manual.title}, ", manual_link(manual.id), f", edition {edition(manual)}"),
-        pages=tuple(PageLink(text, "" if address == page else address) for text, address in pages),
-    )
-
-
-def _nav(section: Section, count: int) -> NavItem:
-    parts = [NavItem(Piece(group.title, f"#{group.id}")) for group in section.groups]
-    return NavItem(Piece(section.title, f"#{section.id}"), str(count), tuple(parts) if len(parts) > 1 else ())
+def _groups(links: Links, part: str) -> tuple[Group, ...]:
+    """Groups of a part; those without anything in them are left out."""
+    device = links.device
+    match part:
+        case "codes":
+            return _code_groups(links, device.codes)
+        case "objects":
+            return _object_groups(links, device.objects)
+        case "errors":
+            return _error_groups(links, device.errors)
+        case "leds":
+            groups = [led_group(links, device.indicators)]
+        case "switches":
+            groups = [switch_group(links, device.switches)]
+        case "telegrams":
+            groups = [layout_group(links, device.layouts), example_group(links, device.examples)]
+        case "tables":
+            groups = [table_group(links, device.tables), formula_group(links, device.formulas)]
+        case "errata":
+            return ledger_groups(links, device.errata)
+        case _:
+            return ()
+    return tuple(group for group in groups if group.entries)
 
 
 def _facts(links: Links, device: Device) -> Iterator[Fact]:
@@ -289,7 +260,7 @@ def _facts(links: Links, device: Device) -> Iterator[Fact]:
     yield Fact("Maker", device.manufacturer)
     yield Fact("Fieldbus", device.bus)
     if device.drive:
-        yield Fact("Base drive", (Piece(device.drive.title, "#drive"),))
+        yield Fact("Base drive", (Piece(device.drive.title, page_of(device, "drive")),))
     if device.hardware_version:
         yield Fact("Hardware from", device.hardware_version)
     if device.software_version:

@@ -3,10 +3,11 @@
 import re
 from collections.abc import Iterator, Sequence
 
-from generator.emit.html.blocks import Anchor, Bullets, Entry, Fact, Group, Row, Table, anchored
+from generator.emit.html.blocks import Anchor, Bullets, Entry, Fact, Group, Row, Table
 from generator.emit.html.lamps import lamp
-from generator.emit.html.links import Links, named_id
+from generator.emit.html.links import Links
 from generator.emit.html.notes import named_subject, notes
+from generator.emit.html.places import named_id
 from generator.emit.html.text import NONE, Piece, Prose, between, joined, noted, shown_origin
 from generator.model import IndicatorRow, IndicatorTable, Origin, SwitchGroup, SwitchRow
 
@@ -19,7 +20,7 @@ _ROWS_A_COLUMN = 32
 
 def led_group(links: Links, tables: Sequence[IndicatorTable]) -> Group:
     """LED tables below one heading."""
-    rows = tuple(Row((anchored(_led_anchor(table)), table.name, str(len(table.rows)))) for table in tables)
+    rows = tuple(Row((links.anchored(_led_anchor(table)), table.name, str(len(table.rows)))) for table in tables)
     entries = tuple(led_entry(links, table) for table in tables)
     return Group("leds-all", "LED tables", Table("overview", _LED_OVERVIEW, rows), entries)
 
@@ -67,7 +68,7 @@ def _row_source(links: Links, row: IndicatorRow) -> Prose:
 
 def switch_group(links: Links, groups: Sequence[SwitchGroup]) -> Group:
     """Groups of switches below one heading."""
-    rows = tuple(Row((anchored(_switch_anchor(group)), group.name, str(len(group.rows)))) for group in groups)
+    rows = tuple(Row((links.anchored(_switch_anchor(group)), group.name, str(len(group.rows)))) for group in groups)
     entries = tuple(switch_entry(links, group) for group in groups)
     return Group("switches-all", "Groups of switches", Table("overview", _SWITCH_OVERVIEW, rows), entries)
 

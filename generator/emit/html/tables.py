@@ -2,9 +2,10 @@
 
 from collections.abc import Iterator, Sequence
 
-from generator.emit.html.blocks import Anchor, Bullets, Entry, Fact, Group, Row, Table, anchored
-from generator.emit.html.links import Links, named_id
+from generator.emit.html.blocks import Anchor, Bullets, Entry, Fact, Group, Row, Table
+from generator.emit.html.links import Links
 from generator.emit.html.notes import named_subject, notes
+from generator.emit.html.places import named_id
 from generator.emit.html.text import NONE, Piece, Prose, shown_origin
 from generator.model import Column, Formula
 from generator.model import Table as PrintedTable
@@ -17,7 +18,7 @@ _FORMULAS = ("Formula", "Name", "Expression")
 
 def table_group(links: Links, tables: Sequence[PrintedTable]) -> Group:
     """Tables below one heading."""
-    rows = tuple(Row((anchored(_table_anchor(t)), t.name, _kind(t), str(len(t.rows)))) for t in tables)
+    rows = tuple(Row((links.anchored(_table_anchor(t)), t.name, _kind(t), str(len(t.rows)))) for t in tables)
     entries = tuple(table_entry(links, table) for table in tables)
     return Group("tables-all", "All tables", Table("overview", _OVERVIEW, rows), entries)
 
@@ -64,7 +65,7 @@ def _cell(links: Links, cell: int | str) -> Prose:
 
 def formula_group(links: Links, formulas: Sequence[Formula]) -> Group:
     """Formulas below one heading."""
-    rows = tuple(Row((anchored(_formula_anchor(f)), f.name, f.expression)) for f in formulas)
+    rows = tuple(Row((links.anchored(_formula_anchor(f)), f.name, f.expression)) for f in formulas)
     entries = tuple(formula_entry(links, formula) for formula in formulas)
     return Group("formulas-all", "All formulas", Table("overview", _FORMULAS, rows), entries)
 

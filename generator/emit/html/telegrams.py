@@ -4,9 +4,10 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
 from generator.codec import CodecError, decode, encode
-from generator.emit.html.blocks import Anchor, Entry, Fact, Group, Item, ItemList, Row, Table, anchored
-from generator.emit.html.links import Links, named_id
+from generator.emit.html.blocks import Anchor, Entry, Fact, Group, Item, ItemList, Row, Table
+from generator.emit.html.links import Links
 from generator.emit.html.notes import named_subject, notes
+from generator.emit.html.places import named_id
 from generator.emit.html.text import NONE, Piece, Prose, hexadecimal, joined, noted, shown_origin, through
 from generator.model import BitField, Example, Field, FieldType, Layout, Option, Values
 from generator.model.telegram import OPEN, Value
@@ -35,7 +36,8 @@ def layout_group(links: Links, layouts: Sequence[Layout]) -> Group:
 
 
 def _layout_row(links: Links, layout: Layout) -> Row:
-    return Row((anchored(_layout_anchor(layout)), layout.name, layout.protocol, str(len(_examples(links, layout)))))
+    count = str(len(_examples(links, layout)))
+    return Row((links.anchored(_layout_anchor(layout)), layout.name, layout.protocol, count))
 
 
 def _layout_anchor(layout: Layout) -> Anchor:
@@ -133,7 +135,7 @@ def _run(part: BitField) -> str:
 
 def example_group(links: Links, examples: Sequence[Example]) -> Group:
     """Worked examples below one heading."""
-    rows = tuple(Row((anchored(_anchor(e)), e.name, e.direction, (_octets(e.data),))) for e in examples)
+    rows = tuple(Row((links.anchored(_anchor(e)), e.name, e.direction, (_octets(e.data),))) for e in examples)
     entries = tuple(example_entry(links, example) for example in examples)
     return Group("telegrams-examples", "Worked examples", Table("overview telegrams", _EXAMPLE_OVERVIEW, rows), entries)
 
