@@ -63,6 +63,7 @@ def standard(file: SourceFile, manuals: Mapping[str, Manual]) -> tuple[tuple[Sta
         CobId(
             name=str(node.get("name")),
             base=int(node.get("base")),
+            broadcast=bool(node.get("broadcast")),
             objects=tuple(
                 i for run in node.read("objects", references) or () for i in run.items if isinstance(i, ObjectRef)
             ),

@@ -107,9 +107,10 @@ class StandardObject:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CobId:
-    """Entry of the predefined connection set: COB-ID = ``base`` + node address."""
+    """Entry of the predefined connection set: COB-ID = ``base`` + node address, ``base`` alone of a ``broadcast``."""
 
     name: str
     base: int
+    broadcast: bool
     objects: tuple[ObjectRef, ...]
     cite: Cite

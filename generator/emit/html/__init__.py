@@ -11,6 +11,7 @@ from generator.emit.environment import TEMPLATES
 from generator.emit.environment import render as fill
 from generator.emit.html.lamps import animations
 from generator.emit.html.pages import pages
+from generator.emit.html.search import search_data
 from generator.model import Model
 
 
@@ -21,7 +22,9 @@ def render(model: Model) -> dict[str, Output]:
         EmitError: A file that the pages describe cannot be written.
     """
     outputs = {"style.css": fill("html/style.css.j2", animations=animations(model))}
-    for page in pages(model):
+    site = tuple(pages(model))
+    outputs["search-data.js"] = search_data(model, [page.frame for page in site])
+    for page in site:
         outputs[page.frame.path] = fill(f"html/{page.template}.html.j2", frame=page.frame, page=page.view)
     for script in sorted((TEMPLATES / "html").glob("*.js")):
         outputs[script.name] = script.read_text(encoding="utf-8")

@@ -79,7 +79,7 @@ def error_entry(links: Links, entry: _Variants) -> Entry:
     return Entry(
         kind="error",
         anchors=tuple(_anchor(one, one.number) for one in entry),
-        name=_name(entry),
+        name=shared_name(entry),
         marks=(origin,) if origin else (),
         lead=links.prose(error.description),
         facts=tuple(_facts(links, error)),
@@ -95,7 +95,7 @@ def _sentences(links: Links, texts: Sequence[str]) -> tuple[Prose, ...]:
     return tuple(map(links.prose, texts))
 
 
-def _name(entry: _Variants) -> str:
+def shared_name(entry: Sequence[ErrorEntry]) -> str:
     """Name that all slots share: "CAN module (MXI1 / MXI2): bus-off"."""
     slots = [error.slot for error in entry if error.slot]
     return entry[0].name.replace(slots[0], " / ".join(slots)) if slots else entry[0].name
@@ -143,9 +143,14 @@ def _numbered(links: Links, error: ErrorEntry) -> Prose:
     return first if error.count == 1 else (*first, f" {ELLIPSIS} {last}")
 
 
+def has_own_places(error: ErrorEntry) -> bool:
+    """Whether each number of a run has a place of its own on the page of the run."""
+    return error.count > 1 and len(error.adjustable_in) == error.count
+
+
 def _numbers(links: Links, error: ErrorEntry) -> Iterator[ItemList]:
     """Every number of a run with the code that sets its response, where each has one of its own."""
-    if error.count == 1 or len(error.adjustable_in) != error.count:
+    if not has_own_places(error):
         return
     items = []
     for number, code in zip(range(error.number, error.last + 1), error.adjustable_in, strict=True):
