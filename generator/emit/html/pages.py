@@ -5,7 +5,9 @@ from dataclasses import dataclass
 from functools import partial
 
 from generator.emit.html.blocks import Entry, Fact, Group, Row, Table
+from generator.emit.html.codenames import code_names, object_names
 from generator.emit.html.codes import code_entry, code_group
+from generator.emit.html.contents import PART, DeviceLists, Section, overview, sections
 from generator.emit.html.coverage import Coverage, coverage, edition, listed_sources
 from generator.emit.html.drive import DriveSection, drive_section
 from generator.emit.html.errors import error_entry, error_group
@@ -74,9 +76,10 @@ class DeviceView:
 
 @dataclass(frozen=True, slots=True)
 class EntryView:
-    """The page of one entry."""
+    """The page of one entry; ``names``: what generated code calls it."""
 
     entry: Entry
+    names: tuple[Fact, ...]
 
 
 @dataclass(frozen=True, slots=True)
@@ -102,6 +105,20 @@ class IndexView:
 
 
 @dataclass(frozen=True, slots=True)
+class ContentsView:
+    """Where everything is listed, device by device."""
+
+    devices: tuple[DeviceLists, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class EverythingView:
+    """Everything on a device."""
+
+    sections: tuple[Section, ...]
+
+
+@dataclass(frozen=True, slots=True)
 class CoverageView:
     """Everything on the page of the sources."""
 
@@ -112,6 +129,7 @@ def pages(model: Model) -> Iterator[Page]:
     """Every page of the reference."""
     yield _index(model)
     yield _coverage(model)
+    yield _contents(model)
     for device in model.devices:
         yield from _device_pages(model, device)
 
@@ -128,6 +146,14 @@ def _coverage(model: Model) -> Page:
     title = "Coverage of the sources"
     frame = site_frame(model, COVERAGE, title, "What became of every chapter of every manual, and what is lost.")
     return Page(frame, "coverage", CoverageView(coverage(model)))
+
+
+def _contents(model: Model) -> Page:
+    title = "All entries"
+    frame = site_frame(
+        model, "contents.html", title, "Lists of every code, object, error and other entry of all devices."
+    )
+    return Page(frame, "contents", ContentsView(overview(model)))
 
 
 def _device_row(device: Device) -> Row:
@@ -164,6 +190,9 @@ def _device_pages(model: Model, device: Device) -> Iterator[Page]:
     overview = f"{device.title} ({device.order_code}): codes, objects, errors, LEDs, switches and telegrams."
     frame = device_frame(model, device, nav, title=device.title, description=overview)
     yield Page(frame, "device", DeviceView(tuple(_facts(links.on(page_of(device)), device))))
+    description = f"Every number and name of the {device.title} on one page."
+    frame = device_frame(model, device, nav, part=PART, title="All entries", description=description)
+    yield Page(frame, "everything", EverythingView(sections(model, device)))
     for part, groups in parts.items():
         title = _TITLES[part]
         names = ", ".join(dict.fromkeys(group.title for group in groups))
@@ -187,10 +216,10 @@ def _device_pages(model: Model, device: Device) -> Iterator[Page]:
 def _entry_pages(model: Model, links: Links, nav: Sequence[NavItem], part: str) -> Iterator[Page]:
     """A page for every entry of a part, each with its neighbours in the list."""
     device = links.device
-    entries = [(path, entry(links.on(path))) for path, entry in _entries(device, part)]
-    pieces = [Piece(_named(entry), path) for path, entry in entries]
+    entries = [(path, entry(links.on(path)), names) for path, entry, names in _entries(device, part)]
+    pieces = [Piece(_named(entry), path) for path, entry, _ in entries]
     around = zip([None, *pieces], [*pieces[1:], None], strict=False)
-    for (_, entry), piece, neighbours in zip(entries, pieces, around, strict=True):
+    for (_, entry, names), piece, neighbours in zip(entries, pieces, around, strict=True):
         frame = device_frame(
             model,
             device,
@@ -201,22 +230,24 @@ def _entry_pages(model: Model, links: Links, nav: Sequence[NavItem], part: str) 
             description=_described(entry, piece.text),
             neighbours=neighbours,
         )
-        yield Page(frame, "entry", EntryView(entry))
+        yield Page(frame, "entry", EntryView(entry, names))
 
 
-def _entries(device: Device, part: str) -> Iterator[tuple[str, Callable[[Links], Entry]]]:
-    """Path and builder of the page of every entry of a part."""
+def _entries(device: Device, part: str) -> Iterator[tuple[str, Callable[[Links], Entry], tuple[Fact, ...]]]:
+    """Path and builder of the page of every entry of a part, and what generated code calls the entry."""
     match part:
         case "codes":
             for codes in code_entries(device.codes):
-                yield page_of(device, code_id(codes[0].number)), partial(code_entry, entry=codes)
+                path = page_of(device, code_id(codes[0].number))
+                yield path, partial(code_entry, entry=codes), code_names(device, codes)
         case "objects":
             for found in device.objects:
-                yield page_of(device, object_id(found)), partial(object_entry, entry=found)
+                path = page_of(device, object_id(found))
+                yield path, partial(object_entry, entry=found), object_names(device, found)
         case "errors":
             for errors in error_entries(device, device.errors):
                 name = error_id(errors[0].kind, errors[0].number)
-                yield page_of(device, name), partial(error_entry, entry=errors)
+                yield page_of(device, name), partial(error_entry, entry=errors), ()
 
 
 def _named(entry: Entry) -> str:

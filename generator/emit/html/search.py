@@ -14,6 +14,9 @@ from generator.model import Device, Model
 _EVENT = "search-data"
 """How the script hands over its data without a name that all scripts share."""
 
+_EXEMPLARY = ("code", "canopen", "device-error")
+"""Kinds of things of which one is named to whoever finds nothing."""
+
 _NOWHERE = -1
 """Stands for the device of a page that belongs to none."""
 
@@ -33,10 +36,21 @@ def search_data(model: Model, frames: Iterable[Frame]) -> str:
         "kinds": [singular for singular, _ in KINDS.values()],
         "devices": [[device.id, device.order_code] for device in model.devices],
         "rows": [*_things(model), *_pages(model, frames)],
+        "examples": _examples(model),
         "reported": [_reported(device) for device in model.devices],
     }
     text = json.dumps(data, ensure_ascii=False, separators=(",", ":"))
     return f'"use strict";\nwindow.dispatchEvent(new CustomEvent("{_EVENT}", {{ detail: {text} }}));\n'
+
+
+def _examples(model: Model) -> list[str]:
+    """Numbers that can be looked for: the first of some kinds in all of its notations."""
+    shown: dict[str, Spot] = {}
+    for device in model.devices:
+        for thing in things(model, Links(device)):
+            if thing.kind in _EXEMPLARY:
+                shown.setdefault(thing.kind, thing.spots[0])
+    return [text for spot in shown.values() for text in (spot.text, *spot.also)]
 
 
 def _things(model: Model) -> Iterator[list[Any]]:

@@ -182,7 +182,10 @@ def _object(links: Links, entry: DictionaryObject) -> Thing:
         (hexadecimal(entry.index, _INDEX_BITS), str(entry.index)) if canopen else (),
         links.href(object_id(entry, 0)).removesuffix("0"),
     )
-    parts = tuple(Part(sub.number, sub.name, _labels(sub.options, sub.fields)) for sub in entry.subindexes)
+    parts = tuple(
+        Part(sub.number, sub.name if sub.name != entry.name else "", _labels(sub.options, sub.fields))
+        for sub in entry.subindexes
+    )
     return Thing(entry.kind, entry.name, "", (spot,), parts=parts)
 
 

@@ -1,0 +1,424 @@
+"use strict";
+// Search as you type, over data that come as a script: pages opened from a folder cannot fetch.
+{
+  const SHOWN = 20;
+  const DATA = "search-data";
+  // What counts for things of the device that the page is about.
+  const HERE = 4;
+  // Tiers of answers, the best first.
+  const [EXACT, PART, WHOLE, RUN, BEGINS, WORDS] = [0, 1, 2, 3, 4, 5];
+
+  // Reading of numbers
+
+  // A number in the notations of manuals, tools and bus monitors: letter of the space, digits, part after a separator.
+  const NUMBER = /^(c|i|pnu|e)?-?(0x)?([0-9a-f]+)(h)?(?:(?:[/.:-]|sub)(0x)?([0-9a-f]{1,3})(h)?)?$/;
+  const OCTETS = /^[0-9a-f]{2}(?:[ ,-][0-9a-f]{2}){1,3}$/;
+  const SPACES = { c: "c", i: "i", pnu: "p", e: "de", "": "cidepb" };
+
+  // Everything that the text may mean as a number, the likeliest first: spaces to look in, number, parts to look for.
+  function readings(text) {
+    const found = [];
+    if (OCTETS.test(text)) {
+      const octets = text.split(/[ ,-]/);
+      // As a list writes it, then as it travels on a bus that sends the low byte first.
+      for (const order of [octets, octets.toReversed()]) found.push({ spaces: "dei", number: parseInt(order.join(""), 16), parts: [] });
+      return found;
+    }
+    // A separator at the end begins a part that is still to be typed.
+    const tight = text.replace(/[\s_']/g, "").replace(/(?<=[\da-f])(?:[/.:-]|su?b?)$/, "");
+    if (/^-\d+$/.test(tight)) return [{ spaces: "de", number: Number(tight) >>> 0, parts: [] }];
+    const match = NUMBER.exec(tight);
+    if (!match) return found;
+    const [, letter = "", mark, digits, tail, partMark, part, partTail] = match;
+    const parts = [];
+    if (part !== undefined) {
+      if (!partMark && !partTail && /^\d+$/.test(part)) parts.push(parseInt(part, 10));
+      const inHex = parseInt(part, 16);
+      if (!parts.includes(inHex)) parts.push(inHex);
+    }
+    const decimal = /^\d+$/.test(digits) && !mark && !tail;
+    if (decimal && letter !== "i") found.push({ spaces: SPACES[letter], number: parseInt(digits, 10), parts });
+    if (letter === "c" && !mark && !tail) {
+      // "c13350" is also hexadecimal, of which people rarely think.
+      if (part === undefined) found.push({ spaces: "ide", number: parseInt(letter + digits, 16), parts });
+    } else if (letter !== "pnu") {
+      found.push({ spaces: SPACES[letter].replace(/[cp]/g, ""), number: parseInt(digits, 16), parts });
+    }
+    // "e" may be the first digit of an index.
+    if (letter === "e" && !mark) found.push({ spaces: "ideb", number: parseInt(letter + digits, 16), parts });
+    if (decimal && letter === "i") found.push({ spaces: "i", number: parseInt(digits, 10), parts });
+    return found;
+  }
+
+  // Index of the data
+
+  const fold = (text) => text.toLowerCase().normalize("NFKD").replace(/\p{M}/gu, "");
+  // Beginnings are compared without what only marks a notation.
+  const bare = (text) => fold(text).replace(/^(?:0x|c(?=\d)|i-|pnu )/, "");
+
+  // Rows as objects, their numbers in a map, their words in one text with a line for each row or part.
+  function prepare(data) {
+    const rows = [];
+    const numbers = new Map();
+    const runs = [];
+    const begins = [];
+    const lines = [];
+    const places = [];
+    const index = (key, hit) => {
+      const [, space, first, last, node] = /^(\w)(\d+)(?:-(\d+))?(?:@(\d+))?$/.exec(key);
+      if (last) return runs.push({ space, first: Number(first), last: Number(last), node: node && Number(node), hit });
+      const found = numbers.get(space + first);
+      if (found) found.push(hit);
+      else numbers.set(space + first, [hit]);
+    };
+    for (const [kind, device, name, words = "", spots = [], others = [], parts = []] of data.rows) {
+      const row = { order: rows.length, kind, device, name, spots, parts: new Map(parts.map((it) => [it[0], it])) };
+      rows.push(row);
+      for (const spot of [...spots, ...others]) {
+        const hit = { row, spot };
+        for (const key of spot[2] ? spot[2].split(" ") : []) index(key, hit);
+        begins.push([bare(spot[0]), fold(spot[0]), hit]);
+      }
+      const line = ` ${fold(name)} \t ${fold(words)} ${spots.map((it) => fold(it[0])).join(" ")} `;
+      lines.push(line);
+      places.push({ row, part: null });
+      for (const part of parts) {
+        if (!part[1]) continue;
+        lines.push(` ${fold(part[1])} \t ${fold(part[2] ?? "")} \t ${fold(name)} `);
+        places.push({ row, part });
+      }
+    }
+    const starts = [];
+    let at = 0;
+    for (const line of lines) {
+      starts.push(at);
+      at += line.length + 1;
+    }
+    return { ...data, rows, numbers, runs, begins, lines, places, starts, text: lines.join("\n") };
+  }
+
+  // Answers
+
+  function find(index, query, device) {
+    const text = fold(query).trim().replace(/\s+/g, " ");
+    if (!text) return { hits: [], instead: "" };
+    const best = new Map();
+    const add = (hit) => {
+      const key = `${hit.row.order}/${hit.part ? hit.part[0] : ""}`;
+      const other = best.get(key);
+      if (!other || before(hit, other) < 0) best.set(key, hit);
+    };
+    const before = (a, b) =>
+      a.tier - b.tier || b.score - a.score || (a.row.device !== device) - (b.row.device !== device) || a.row.order - b.row.order || (a.part?.[0] ?? -1) - (b.part?.[0] ?? -1);
+
+    numbered(index, text, add);
+    begun(index, text, add);
+    const words = text.split(" ");
+    worded(index, words, device, add);
+    let instead = "";
+    if (!best.size) {
+      const mended = words.map((word) => mend(index, word));
+      if (mended.every(Boolean)) {
+        instead = mended.join(" ");
+        worded(index, mended, device, add);
+      }
+    }
+    return { hits: [...best.values()].sort(before), instead };
+  }
+
+  function numbered(index, text, add) {
+    readings(text).forEach(({ spaces, number, parts }, nth) => {
+      [...spaces].forEach((space, place) => {
+        const score = -10 * nth - place;
+        for (const hit of index.numbers.get(space + number) ?? []) exact(hit, parts, score, "", add);
+        for (const run of index.runs) {
+          if (run.space !== space || number < run.first || number > run.last) continue;
+          const note = run.node === undefined ? "" : `of node ${number - run.first + run.node}`;
+          add({ ...run.hit, tier: RUN, score, note });
+        }
+        if (space === "d") reported(index, number, score, add);
+      });
+    });
+  }
+
+  // A number that was found, or the part of it that was asked for; else what it is divided into comes after it.
+  function exact(hit, parts, score, note, add) {
+    const asked = parts.map((part) => hit.row.parts.get(part)).find(Boolean);
+    if (asked) return add({ ...hit, part: asked, tier: EXACT, score, note });
+    if (parts.length && !parts.includes(0)) return add({ ...hit, tier: WHOLE, score, note });
+    add({ ...hit, tier: EXACT, score, note });
+    if (!parts.length && hit.row.parts.size > 1) for (const part of hit.row.parts.values()) add({ ...hit, part, tier: PART, score, note });
+  }
+
+  // Error numbers as a drive reports them, with the fields that change at run time.
+  function reported(index, number, score, add) {
+    index.reported.forEach(([mask, fields], device) => {
+      const listed = (number & mask) >>> 0;
+      if (!mask || listed === number || number > 0xffffffff) return;
+      const said = fields
+        .map(([label, low, high, names]) => {
+          const value = Math.floor(number / 2 ** low) % 2 ** (high - low + 1);
+          return names[value] ? `${label} ${value}: ${names[value]}` : value ? `${label} ${value}` : "";
+        })
+        .filter(Boolean);
+      const note = `reported with ${said.join(", ")}`;
+      for (const hit of index.numbers.get(`d${listed}`) ?? []) if (hit.row.device === device) add({ ...hit, tier: EXACT, score, note });
+      for (const run of index.runs) {
+        if (run.space === "d" && run.hit.row.device === device && listed >= run.first && listed <= run.last) add({ ...run.hit, tier: RUN, score, note });
+      }
+    });
+  }
+
+  function begun(index, text, add) {
+    if (!/^(?:c|i-|0x|pnu )?[0-9a-f/]+h?$/.test(text) || !/\d/.test(text)) return;
+    const start = bare(text).replace(/h$/, "");
+    const plain = start === text;
+    for (const [short, full, hit] of index.begins) {
+      const mine = plain ? short.startsWith(start) || short.replace(/^0+/, "").startsWith(start) : full.startsWith(text) || (text.startsWith("0x") && !full.startsWith("c") && short.startsWith(start));
+      if (mine) add({ ...hit, tier: BEGINS, score: 0, note: "" });
+    }
+  }
+
+  // Lines that hold every word, in whatever order; found by the longest, the rarest as a rule.
+  function worded(index, words, device, add) {
+    const phrase = ` ${words.join(" ")}`;
+    const rare = words.reduce((a, b) => (b.length > a.length ? b : a));
+    let line = 0;
+    for (let at = index.text.indexOf(rare); at >= 0; at = index.text.indexOf(rare, index.starts[line] ?? Infinity)) {
+      line = lineAt(index.starts, at);
+      const found = index.lines[line];
+      const place = index.places[line];
+      const score = rate(found, words, phrase);
+      // A whole comes before parts that say the same.
+      const more = (place.row.device === device ? HERE : 0) - (place.part ? 1 : 0);
+      if (score) add({ ...place, spot: null, tier: WORDS, score: score + more, note: "" });
+      line += 1;
+    }
+  }
+
+  function lineAt(starts, at) {
+    let low = 0;
+    let high = starts.length - 1;
+    while (low < high) {
+      const middle = (low + high + 1) >> 1;
+      if (starts[middle] <= at) low = middle;
+      else high = middle - 1;
+    }
+    return low;
+  }
+
+  // How well a line answers: whole words before beginnings before middles, the name before what is said of it.
+  function rate(line, words, phrase) {
+    const [name, said, whole = ""] = line.split("\t");
+    let score = 0;
+    let own = !whole;
+    for (const word of words) {
+      const ofName = weigh(name, word);
+      const ofSaid = weigh(said, word);
+      if (ofName || ofSaid) own = true;
+      const best = Math.max(ofName * 3, ofSaid * 2, weigh(whole, word));
+      if (!best) return 0;
+      score += best;
+    }
+    if (!own) return 0;
+    if (words.length > 1 && line.includes(phrase)) score += 4 * words.length;
+    else if (words.length > 1 && words.every((word) => word.length < 3)) return 0;
+    if (name === `${phrase} `) score += 2;
+    return score;
+  }
+
+  const weigh = (text, word) => (text.includes(` ${word} `) ? 4 : text.includes(` ${word}`) ? 3 : text.includes(word) ? 1 : 0);
+
+  // The word of the data that one slip of typing turns into this one; the word itself where it occurs.
+  function mend(index, word) {
+    if (index.text.includes(word)) return word;
+    if (word.length < 4) return "";
+    index.vocabulary ??= [...new Set(index.text.match(/\p{L}{4,}/gu))];
+    return index.vocabulary.find((other) => oneSlip(word, other)) ?? "";
+  }
+
+  function oneSlip(a, b) {
+    if (Math.abs(a.length - b.length) > 1) return false;
+    let head = 0;
+    while (head < a.length && a[head] === b[head]) head += 1;
+    const rests = [[1, 1], [1, 0], [0, 1]].map(([x, y]) => [a.slice(head + x), b.slice(head + y)]);
+    const swapped = a[head] === b[head + 1] && a[head + 1] === b[head] && a.slice(head + 2) === b.slice(head + 2);
+    return swapped || rests.some(([x, y]) => x === y);
+  }
+
+  // The field
+
+  const make = (tag, attributes = {}, ...children) => {
+    const element = document.createElement(tag);
+    for (const [name, value] of Object.entries(attributes)) element.setAttribute(name, value);
+    element.append(...children);
+    return element;
+  };
+
+  const home = document.getElementById("home-search");
+  const place = home ?? document.getElementById("tools");
+  if (place) mount(place);
+
+  function mount(holder) {
+    const field = make("input", {
+      type: "search", id: "search", role: "combobox", "aria-autocomplete": "list", "aria-expanded": "false", "aria-controls": "answers",
+      "aria-describedby": "search-keys", autocomplete: "off", autocapitalize: "none", spellcheck: "false", enterkeyhint: "go",
+      placeholder: home ? "Code, index, error number, LED or words" : "Search",
+    });
+    const list = make("div", { role: "listbox", id: "answers", "aria-label": "Answers" });
+    const foot = make("p", { class: "foot" });
+    const panel = make("div", { class: "answers", hidden: "" }, list, foot);
+    const status = make("p", { role: "status", class: "unseen" });
+    const keys = make("kbd", { "aria-hidden": "true" }, "/");
+    const box = make("div", { class: home ? "search large" : "search", role: "search" },
+      make("label", { for: "search", class: "unseen" }, "Search codes, objects, errors, LEDs and everything else"),
+      make("span", { id: "search-keys", class: "unseen" }, "Slash focuses the field, the arrows choose an answer, Enter opens it, question mark shows all keys."),
+      field, keys, panel, status);
+    holder.prepend(box);
+
+    let index = null;
+    let asked = false;
+    let hits = [];
+    let active = -1;
+    let moved = false;
+    let device = -1;
+
+    function load() {
+      if (asked) return;
+      asked = true;
+      window.addEventListener(DATA, (event) => {
+        index = prepare(event.detail);
+        device = deviceOfPage(index.devices);
+        if (field.value) answer();
+      }, { once: true });
+      document.head.append(make("script", { src: `${DATA}.js` }));
+    }
+
+    function answer() {
+      if (!index) return;
+      const start = performance.now();
+      const result = find(index, field.value, device);
+      performance.clearMeasures("search");
+      performance.measure("search", { start });
+      hits = result.hits.slice(0, SHOWN);
+      moved = false;
+      show(result);
+    }
+
+    function show({ hits: all, instead }) {
+      const query = field.value.trim();
+      list.replaceChildren(...hits.map((hit, nth) => option(index, hit, nth)));
+      list.hidden = !hits.length;
+      const count = all.length === 1 ? "1 answer" : `${all.length} answers`;
+      foot.textContent = !all.length
+        ? `Nothing found for “${query}”. You can search for codes, indexes, error, emergency and abort codes in hexadecimal or decimal, COB-IDs, LED patterns such as “red double flash”, and words of names; for instance ${index.examples.join(", ")}.`
+        : (instead ? `Nothing found for “${query}”; these match “${instead}”. ` : "") + (all.length > SHOWN ? `The best ${SHOWN} of ${count}: type more to narrow them down.` : `${count}.`);
+      if (!query) return close();
+      status.textContent = all.length ? foot.textContent : "Nothing found.";
+      panel.hidden = false;
+      field.setAttribute("aria-expanded", String(hits.length > 0));
+      choose(hits.length ? 0 : -1);
+    }
+
+    function choose(nth) {
+      list.children[active]?.removeAttribute("aria-selected");
+      active = nth;
+      const chosen = list.children[active];
+      if (!chosen) return field.removeAttribute("aria-activedescendant");
+      chosen.setAttribute("aria-selected", "true");
+      field.setAttribute("aria-activedescendant", chosen.id);
+      if (moved) chosen.scrollIntoView({ block: "nearest" });
+    }
+
+    function close() {
+      panel.hidden = true;
+      field.setAttribute("aria-expanded", "false");
+      field.removeAttribute("aria-activedescendant");
+      active = -1;
+    }
+
+    field.addEventListener("focus", load);
+    field.addEventListener("input", answer);
+    field.addEventListener("focus", () => index && field.value && panel.hidden && answer());
+    field.addEventListener("keydown", (event) => {
+      if (event.isComposing || event.altKey || event.metaKey) return;
+      const open = !panel.hidden;
+      const last = hits.length - 1;
+      const steps = { ArrowDown: active < last ? active + 1 : 0, ArrowUp: active > 0 ? active - 1 : last, Home: 0, End: last };
+      if (event.key === "Escape" && (open || field.value)) {
+        if (!open) field.value = "";
+        close();
+        event.preventDefault();
+      } else if (event.key === "Enter" && open && active >= 0) {
+        event.preventDefault();
+        list.children[active].click();
+      } else if (event.key in steps && last >= 0 && !event.shiftKey) {
+        // Home and End move in the text until the arrows have been used.
+        if (event.key.length < 5 && !(open && moved)) return;
+        event.preventDefault();
+        if (!open) return answer();
+        moved = true;
+        choose(steps[event.key]);
+      }
+    });
+    list.addEventListener("pointermove", (event) => {
+      const over = event.target.closest("[role=option]");
+      if (over) choose([...list.children].indexOf(over));
+    });
+    // An answer on this very page moves nothing but the view.
+    list.addEventListener("click", () => setTimeout(() => {
+      close();
+      field.blur();
+    }));
+    box.addEventListener("focusout", (event) => { if (!box.contains(event.relatedTarget)) close(); });
+    panel.addEventListener("pointerdown", (event) => { if (!event.target.closest("a")) event.preventDefault(); });
+
+    document.addEventListener("keydown", (event) => {
+      if (event.ctrlKey || event.metaKey || event.altKey || event.isComposing || typing(event.target)) return;
+      if (event.key === "/") {
+        event.preventDefault();
+        field.focus();
+        field.select();
+      } else if (event.key === "?") {
+        event.preventDefault();
+        help();
+      }
+    });
+    if (home) (window.requestIdleCallback ?? setTimeout)(load);
+  }
+
+  const typing = (element) => element.closest?.("input:not([type=checkbox], [type=radio], [type=button]), textarea, select, dialog, [contenteditable]");
+
+  // Pages of a device begin with its name.
+  function deviceOfPage(devices) {
+    const page = location.pathname.split("/").pop();
+    return devices.findIndex(([id]) => page === `${id}.html` || page.startsWith(`${id}-`));
+  }
+
+  function option(index, { row, spot, part, note }, nth) {
+    const spots = spot ? [spot] : row.spots;
+    const text = spots.map((it) => (part ? `${it[0]}/${part[0]}` : it[0])).join(" / ");
+    const address = part ? spots[0][3] + part[0] : spots[0][1];
+    const name = part?.[1] ? [row.name, ": ", part[1]] : [row.name];
+    const label = index.devices[row.device]?.[1];
+    return make("a", { role: "option", id: `answer-${nth}`, href: address, tabindex: "-1" },
+      make("b", {}, text), " ", make("span", { class: "name" }, ...name, ...(note ? [" ", make("i", {}, note)] : [])), " ",
+      make("small", {}, label ? `${label} · ${index.kinds[row.kind]}` : index.kinds[row.kind]));
+  }
+
+  // Keys
+
+  let dialog = null;
+  function help() {
+    if (!dialog) {
+      const rows = [["/", "to the search field"], ["↓ ↑", "next and previous answer"], ["Home End", "first and last answer"], ["Enter", "open the answer"], ["Esc", "close the answers, then empty the field"], ["?", "this list"]];
+      const close = make("button", { type: "button" }, "Close");
+      close.addEventListener("click", () => dialog.close());
+      const heading = make("h2", { id: "keys-title" }, "Keys");
+      const list = make("dl", {}, ...rows.map(([key, what]) => make("div", {}, make("dt", {}, ...key.split(" ").flatMap((it) => [make("kbd", {}, it), " "])), make("dd", {}, what))));
+      dialog = make("dialog", { class: "keys", "aria-labelledby": "keys-title" }, heading, list, close);
+      document.body.append(dialog);
+    }
+    dialog.showModal();
+  }
+}
