@@ -3,7 +3,8 @@
 {
   const SHOWN = 20;
   const DATA = "search-data";
-  // What counts for things of the device that the page is about.
+  // How much more a word counts in a name, and what counts for things of the device that the page is about.
+  const NAME = 3;
   const HERE = 4;
   // Tiers of answers, the best first.
   const [EXACT, PART, WHOLE, RUN, BEGINS, WORDS] = [0, 1, 2, 3, 4, 5];
@@ -169,14 +170,20 @@
     });
   }
 
+  // Names that are written just so, and numbers that are still being typed.
   function begun(index, text, add) {
-    if (!/^(?:c|i-|0x|pnu )?[0-9a-f/]+h?$/.test(text) || !/\d/.test(text)) return;
+    const typed = /^(?:c|i-|0x|pnu )?[0-9a-f/]+h?$/.test(text) && /\d/.test(text);
     const start = bare(text).replace(/h$/, "");
     const plain = start === text;
     for (const [short, full, hit] of index.begins) {
-      const mine = plain ? short.startsWith(start) || short.replace(/^0+/, "").startsWith(start) : full.startsWith(text) || (text.startsWith("0x") && !full.startsWith("c") && short.startsWith(start));
-      if (mine) add({ ...hit, tier: BEGINS, score: 0, note: "" });
+      if (full === text) add({ ...hit, tier: WORDS, score: weigh(` ${full} `, text) * NAME, note: "" });
+      else if (typed && startsWith(short, full, text, start, plain)) add({ ...hit, tier: BEGINS, score: 0, note: "" });
     }
+  }
+
+  function startsWith(short, full, text, start, plain) {
+    if (plain) return short.startsWith(start) || short.replace(/^0+/, "").startsWith(start);
+    return full.startsWith(text) || (text.startsWith("0x") && !full.startsWith("c") && short.startsWith(start));
   }
 
   // Lines that hold every word, in whatever order; found by the longest, the rarest as a rule.
@@ -216,7 +223,7 @@
       const ofName = weigh(name, word);
       const ofSaid = weigh(said, word);
       if (ofName || ofSaid) own = true;
-      const best = Math.max(ofName * 3, ofSaid * 2, weigh(whole, word));
+      const best = Math.max(ofName * NAME, ofSaid * 2, weigh(whole, word));
       if (!best) return 0;
       score += best;
     }

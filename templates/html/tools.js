@@ -78,7 +78,8 @@
   if (bar) {
     const numbers = [...bar.previousElementSibling.querySelectorAll(".no")];
     for (const it of numbers) bar.append(copier("number", it.textContent, it.textContent));
-    for (const it of numbers) bar.append(copier("link", addressOf(it.hash), numbers.length > 1 ? `Link to ${it.textContent}` : "Link"));
+    bar.append(copier("link", addressOf(numbers[0].hash), "Link"));
+    document.querySelectorAll(".variants tbody th").forEach((head, nth) => head.append(copier("link", addressOf(numbers[nth].hash), "")));
   }
   for (const cell of document.querySelectorAll(".variants tbody td")) {
     if (!cell.querySelector("a, cite") && /\d/.test(cell.textContent)) cell.append(copier("number", cell.textContent, ""));
