@@ -320,11 +320,10 @@ def test_exact_then_parts_then_beginnings_then_words(start: Page, model: Model) 
 
 
 def test_number_stands_before_the_run_that_holds_it(start: Page, model: Model) -> None:
-    device, error, number, href = next(it for it in error_numbers(model) if it[1].count > 1 and it[2] > it[1].number)
+    _, error, number, href = next(it for it in error_numbers(model) if it[1].count > 1 and it[2] > it[1].number)
     (answers,) = ask(start, [f"0x{number:X}"])
     assert answers[0][0] == error_text(error.kind, number)
     assert answers[0][2] == href
-    del device
 
 
 def test_same_number_in_several_devices_is_labelled(start: Page, model: Model) -> None:
@@ -469,8 +468,7 @@ def test_text_of_the_spec_is_never_markup(site: Path, model: Model, browser: Bro
     context.close()
 
 
-@pytest.mark.parametrize("scheme", ["light", "dark"])
-@pytest.mark.parametrize("width", [320, 1280])
+@pytest.mark.parametrize(("scheme", "width"), [("light", 1280), ("dark", 320)])
 def test_open_search_is_accessible(visitor: Visitor, model: Model, scheme: str, width: int) -> None:
     visitor.page.emulate_media(color_scheme="dark" if scheme == "dark" else "light")
     visitor.page.set_viewport_size({"width": width, "height": 700})

@@ -22,7 +22,9 @@
     if (OCTETS.test(text)) {
       const octets = text.split(/[ ,-]/);
       // As a list writes it, then as it travels on a bus that sends the low byte first.
-      for (const order of [octets, octets.toReversed()]) found.push({ spaces: "dei", number: parseInt(order.join(""), 16), parts: [] });
+      for (const order of [octets, octets.toReversed()]) {
+        found.push({ spaces: "dei", number: parseInt(order.join(""), 16), parts: [] });
+      }
       return found;
     }
     // A separator at the end begins a part that is still to be typed.
@@ -53,17 +55,15 @@
 
   // Index of the data
 
-  const fold = (text) => text.toLowerCase().normalize("NFKD").replace(/\p{M}/gu, "");
+  const fold = (text) => (/^[\0-\x7f]*$/.test(text) ? text : text.normalize("NFKD").replace(/\p{M}/gu, "")).toLowerCase();
   // Beginnings are compared without what only marks a notation.
   const bare = (text) => fold(text).replace(/^(?:0x|c(?=\d)|i-|pnu )/, "");
 
   // Rows as objects, their numbers in a map, their words in one text with a line for each row or part.
   function prepare(data) {
-    const rows = [];
     const numbers = new Map();
     const runs = [];
     const begins = [];
-    const lines = [];
     const places = [];
     const index = (key, hit) => {
       const [, space, first, last, node] = /^(\w)(\d+)(?:-(\d+))?(?:@(\d+))?$/.exec(key);
@@ -72,30 +72,29 @@
       if (found) found.push(hit);
       else numbers.set(space + first, [hit]);
     };
-    for (const [kind, device, name, words = "", spots = [], others = [], parts = []] of data.rows) {
-      const row = { order: rows.length, kind, device, name, spots, parts: new Map(parts.map((it) => [it[0], it])) };
-      rows.push(row);
+    data.rows.forEach(([kind, device, name, words = "", spots = [], others = [], parts = []], order) => {
+      const row = { order, kind, device, name, spots, parts: new Map(parts.map((it) => [it[0], it])) };
       for (const spot of [...spots, ...others]) {
         const hit = { row, spot };
         for (const key of spot[2] ? spot[2].split(" ") : []) index(key, hit);
-        begins.push([bare(spot[0]), fold(spot[0]), hit]);
+        const short = bare(spot[0]);
+        begins.push([short, short.replace(/^0+/, ""), fold(spot[0]), hit]);
       }
-      const line = ` ${fold(name)} \t ${fold(words)} ${spots.map((it) => fold(it[0])).join(" ")} `;
-      lines.push(line);
-      places.push({ row, part: null });
+      const own = ` ${fold(name)} `;
+      const numbered = spots.map((it) => fold(it[0])).join(" ");
+      places.push({ row, part: null, name: own, said: ` ${fold(words)} ${numbered} `, whole: "" });
       for (const part of parts) {
-        if (!part[1]) continue;
-        lines.push(` ${fold(part[1])} \t ${fold(part[2] ?? "")} \t ${fold(name)} `);
-        places.push({ row, part });
+        if (part[1]) places.push({ row, part, name: ` ${fold(part[1])} `, said: ` ${fold(part[2] ?? "")} `, whole: own });
       }
-    }
+    });
     const starts = [];
     let at = 0;
+    const lines = places.map((it) => `${it.name}\t${it.said}\t${it.whole}`);
     for (const line of lines) {
       starts.push(at);
       at += line.length + 1;
     }
-    return { ...data, rows, numbers, runs, begins, lines, places, starts, text: lines.join("\n") };
+    return { ...data, numbers, runs, begins, places, starts, text: lines.join("\n") };
   }
 
   // Answers
@@ -104,13 +103,14 @@
     const text = fold(query).trim().replace(/\s+/g, " ");
     if (!text) return { hits: [], instead: "" };
     const best = new Map();
+    // One number for the order: tier, score, device of the page, place in the list.
     const add = (hit) => {
-      const key = `${hit.row.order}/${hit.part ? hit.part[0] : ""}`;
+      const elsewhere = hit.row.device === device ? 0 : 1;
+      hit.rank = ((hit.tier * 1000 - hit.score) * 2 + elsewhere) * 2 ** 31 + hit.row.order * 2 ** 10 + (hit.part ? hit.part[0] + 1 : 0);
+      const key = hit.part ?? hit.row;
       const other = best.get(key);
-      if (!other || before(hit, other) < 0) best.set(key, hit);
+      if (!other || hit.rank < other.rank) best.set(key, hit);
     };
-    const before = (a, b) =>
-      a.tier - b.tier || b.score - a.score || (a.row.device !== device) - (b.row.device !== device) || a.row.order - b.row.order || (a.part?.[0] ?? -1) - (b.part?.[0] ?? -1);
 
     numbered(index, text, add);
     begun(index, text, add);
@@ -124,7 +124,7 @@
         worded(index, mended, device, add);
       }
     }
-    return { hits: [...best.values()].sort(before), instead };
+    return { hits: [...best.values()].sort((a, b) => a.rank - b.rank), instead };
   }
 
   function numbered(index, text, add) {
@@ -163,9 +163,12 @@
         })
         .filter(Boolean);
       const note = `reported with ${said.join(", ")}`;
-      for (const hit of index.numbers.get(`d${listed}`) ?? []) if (hit.row.device === device) add({ ...hit, tier: EXACT, score, note });
-      for (const run of index.runs) {
-        if (run.space === "d" && run.hit.row.device === device && listed >= run.first && listed <= run.last) add({ ...run.hit, tier: RUN, score, note });
+      for (const hit of index.numbers.get(`d${listed}`) ?? []) {
+        if (hit.row.device === device) add({ ...hit, tier: EXACT, score, note });
+      }
+      for (const { space, first, last, hit } of index.runs) {
+        const holds = space === "d" && listed >= first && listed <= last;
+        if (holds && hit.row.device === device) add({ ...hit, tier: RUN, score, note });
       }
     });
   }
@@ -175,30 +178,30 @@
     const typed = /^(?:c|i-|0x|pnu )?[0-9a-f/]+h?$/.test(text) && /\d/.test(text);
     const start = bare(text).replace(/h$/, "");
     const plain = start === text;
-    for (const [short, full, hit] of index.begins) {
-      if (full === text) add({ ...hit, tier: WORDS, score: weigh(` ${full} `, text) * NAME, note: "" });
-      else if (typed && startsWith(short, full, text, start, plain)) add({ ...hit, tier: BEGINS, score: 0, note: "" });
+    const inHex = text.startsWith("0x");
+    for (const [short, digits, full, hit] of index.begins) {
+      if (full === text) add({ ...hit, tier: WORDS, score: 4 * NAME, note: "" });
+      if (!typed) continue;
+      const fits = plain
+        ? short.startsWith(start) || digits.startsWith(start)
+        : full.startsWith(text) || (inHex && !full.startsWith("c") && short.startsWith(start));
+      if (fits) add({ ...hit, tier: BEGINS, score: 0, note: "" });
     }
-  }
-
-  function startsWith(short, full, text, start, plain) {
-    if (plain) return short.startsWith(start) || short.replace(/^0+/, "").startsWith(start);
-    return full.startsWith(text) || (text.startsWith("0x") && !full.startsWith("c") && short.startsWith(start));
   }
 
   // Lines that hold every word, in whatever order; found by the longest, the rarest as a rule.
   function worded(index, words, device, add) {
+    const forms = words.map((word) => [` ${word} `, ` ${word}`, word]);
     const phrase = ` ${words.join(" ")}`;
     const rare = words.reduce((a, b) => (b.length > a.length ? b : a));
     let line = 0;
     for (let at = index.text.indexOf(rare); at >= 0; at = index.text.indexOf(rare, index.starts[line] ?? Infinity)) {
       line = lineAt(index.starts, at);
-      const found = index.lines[line];
       const place = index.places[line];
-      const score = rate(found, words, phrase);
+      const score = rate(place, forms, phrase);
       // A whole comes before parts that say the same.
       const more = (place.row.device === device ? HERE : 0) - (place.part ? 1 : 0);
-      if (score) add({ ...place, spot: null, tier: WORDS, score: score + more, note: "" });
+      if (score) add({ row: place.row, part: place.part, spot: null, tier: WORDS, score: score + more, note: "" });
       line += 1;
     }
   }
@@ -215,26 +218,30 @@
   }
 
   // How well a line answers: whole words before beginnings before middles, the name before what is said of it.
-  function rate(line, words, phrase) {
-    const [name, said, whole = ""] = line.split("\t");
+  function rate({ name, said, whole }, forms, phrase) {
     let score = 0;
     let own = !whole;
-    for (const word of words) {
-      const ofName = weigh(name, word);
-      const ofSaid = weigh(said, word);
+    for (const form of forms) {
+      const ofName = weigh(name, form);
+      const ofSaid = weigh(said, form);
       if (ofName || ofSaid) own = true;
-      const best = Math.max(ofName * NAME, ofSaid * 2, weigh(whole, word));
+      const best = Math.max(ofName * NAME, ofSaid * 2, whole && weigh(whole, form));
       if (!best) return 0;
       score += best;
     }
     if (!own) return 0;
-    if (words.length > 1 && line.includes(phrase)) score += 4 * words.length;
-    else if (words.length > 1 && words.every((word) => word.length < 3)) return 0;
+    if (forms.length > 1) {
+      if (name.includes(phrase) || said.includes(phrase)) score += 4 * forms.length;
+      else if (forms.every(([, , word]) => word.length < 3)) return 0;
+    }
     if (name === `${phrase} `) score += 2;
     return score;
   }
 
-  const weigh = (text, word) => (text.includes(` ${word} `) ? 4 : text.includes(` ${word}`) ? 3 : text.includes(word) ? 1 : 0);
+  function weigh(text, [whole, beginning, middle]) {
+    if (!text.includes(middle)) return 0;
+    return text.includes(whole) ? 4 : text.includes(beginning) ? 3 : 1;
+  }
 
   // The word of the data that one slip of typing turns into this one; the word itself where it occurs.
   function mend(index, word) {
@@ -262,6 +269,7 @@
     return element;
   };
 
+  const idle = window.requestIdleCallback ?? setTimeout;
   const home = document.getElementById("home-search");
   const place = home ?? document.getElementById("tools");
   if (place) mount(place);
@@ -279,7 +287,8 @@
     const keys = make("kbd", { "aria-hidden": "true" }, "/");
     const box = make("div", { class: home ? "search large" : "search", role: "search" },
       make("label", { for: "search", class: "unseen" }, "Search codes, objects, errors, LEDs and everything else"),
-      make("span", { id: "search-keys", class: "unseen" }, "Slash focuses the field, the arrows choose an answer, Enter opens it, question mark shows all keys."),
+      make("span", { id: "search-keys", class: "unseen" },
+        "Slash focuses the field, the arrows choose an answer, Enter opens it, question mark shows all keys."),
       field, keys, panel, status);
     holder.prepend(box);
 
@@ -295,6 +304,8 @@
       asked = true;
       window.addEventListener(DATA, (event) => {
         index = prepare(event.detail);
+        // The rarest way is also the slowest at its first use.
+        idle(() => find(index, "zzzz", device));
         device = deviceOfPage(index.devices);
         if (field.value) answer();
       }, { once: true });
@@ -317,9 +328,12 @@
       list.replaceChildren(...hits.map((hit, nth) => option(index, hit, nth)));
       list.hidden = !hits.length;
       const count = all.length === 1 ? "1 answer" : `${all.length} answers`;
-      foot.textContent = !all.length
-        ? `Nothing found for “${query}”. You can search for codes, indexes, error, emergency and abort codes in hexadecimal or decimal, COB-IDs, LED patterns such as “red double flash”, and words of names; for instance ${index.examples.join(", ")}.`
-        : (instead ? `Nothing found for “${query}”; these match “${instead}”. ` : "") + (all.length > SHOWN ? `The best ${SHOWN} of ${count}: type more to narrow them down.` : `${count}.`);
+      foot.textContent = all.length
+        ? (instead ? `Nothing found for “${query}”; these match “${instead}”. ` : "") +
+          (all.length > SHOWN ? `The best ${SHOWN} of ${count}: type more to narrow them down.` : `${count}.`)
+        : `Nothing found for “${query}”. You can search for codes, indexes, error, emergency and abort codes in ` +
+          "hexadecimal or decimal, COB-IDs, LED patterns such as “red double flash”, and words of names; " +
+          `for instance ${index.examples.join(", ")}.`;
       if (!query) return close();
       status.textContent = all.length ? foot.textContent : "Nothing found.";
       panel.hidden = false;
@@ -391,10 +405,11 @@
         help();
       }
     });
-    if (home) (window.requestIdleCallback ?? setTimeout)(load);
+    if (home) idle(load);
   }
 
-  const typing = (element) => element.closest?.("input:not([type=checkbox], [type=radio], [type=button]), textarea, select, dialog, [contenteditable]");
+  const TYPING = "input:not([type=checkbox], [type=radio], [type=button]), textarea, select, dialog, [contenteditable]";
+  const typing = (element) => element.closest?.(TYPING);
 
   // Pages of a device begin with its name.
   function deviceOfPage(devices) {
@@ -418,11 +433,18 @@
   let dialog = null;
   function help() {
     if (!dialog) {
-      const rows = [["/", "to the search field"], ["↓ ↑", "next and previous answer"], ["Home End", "first and last answer"], ["Enter", "open the answer"], ["Esc", "close the answers, then empty the field"], ["?", "this list"]];
+      const rows = [
+        ["/", "to the search field"], ["↓ ↑", "next and previous answer"], ["Home End", "first and last answer"],
+        ["Enter", "open the answer"], ["Esc", "close the answers, then empty the field"], ["?", "this list"],
+      ];
       const close = make("button", { type: "button" }, "Close");
       close.addEventListener("click", () => dialog.close());
       const heading = make("h2", { id: "keys-title" }, "Keys");
-      const list = make("dl", {}, ...rows.map(([key, what]) => make("div", {}, make("dt", {}, ...key.split(" ").flatMap((it) => [make("kbd", {}, it), " "])), make("dd", {}, what))));
+      const list = make("dl");
+      for (const [keys, what] of rows) {
+        const term = make("dt", {}, ...keys.split(" ").flatMap((it) => [make("kbd", {}, it), " "]));
+        list.append(make("div", {}, term, make("dd", {}, what)));
+      }
       dialog = make("dialog", { class: "keys", "aria-labelledby": "keys-title" }, heading, list, close);
       document.body.append(dialog);
     }

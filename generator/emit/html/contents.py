@@ -12,6 +12,8 @@ from generator.model import Device, Model
 PART = "index"
 """Part of the reference of a device that lists everything on it."""
 
+_ITSELF = "device"
+
 
 @dataclass(frozen=True, slots=True)
 class ListedPart:
@@ -53,6 +55,8 @@ def sections(model: Model, device: Device) -> tuple[Section, ...]:
     """Everything on a device, by kind."""
     kinds: dict[str, list[Thing]] = {}
     for thing in things(model, Links(device)):
+        if thing.kind == _ITSELF:
+            continue
         kinds.setdefault(thing.kind, []).append(thing)
     ordered = ((kind, title) for kind, (_, title) in KINDS.items() if kind in kinds)
     return tuple(Section(f"all-{kind}", title, tuple(map(_listed, kinds[kind]))) for kind, title in ordered)
