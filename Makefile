@@ -8,6 +8,8 @@ VENV := .venv
 RUN := $(VENV)/bin/python
 SOURCES := $(shell find spec generator templates -type f -not -path '*/__pycache__/*' -not -name '.*')
 PIP := $(RUN) -m pip install --quiet --disable-pip-version-check
+BROWSER = { [ "$$(id -u)" = 0 ] && command -v apt-get >/dev/null && echo "make test: installing chromium" && apt-get update -qq && \
+	DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends chromium fonts-dejavu-core >/dev/null; }
 
 .PHONY: all site serve check test lint fuzz census clean help
 all: .build/generated .build/site
@@ -49,6 +51,7 @@ test: .build/generated .build/site $(VENV)/ready-for-tests lint ## run the whole
 	@command -v c++ >/dev/null || { echo "make test: install a C++ compiler (c++ is not on the PATH)" >&2; exit 1; }
 	@command -v cmake >/dev/null || { echo "make test: install CMake (cmake is not on the PATH)" >&2; exit 1; }
 	@command -v pkg-config >/dev/null || { echo "make test: install pkg-config (it is not on the PATH)" >&2; exit 1; }
+	@command -v chromium >/dev/null || $(BROWSER) || echo "make test: the tests in a browser are left out, install chromium for them" >&2
 	@command -v cargo >/dev/null || { echo "make test: install Rust (cargo is not on the PATH)" >&2; exit 1; }
 	$(RUN) -m pytest
 
