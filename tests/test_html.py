@@ -1413,7 +1413,7 @@ def test_commands_write_the_dcf_of_each_file(model: Model, folders: list[tuple[D
             words = shlex.split(command)
             assert words[:4] == ["python", "-m", "generator", "dcf"]
             options = dict(zip(words[4::2], words[5::2], strict=True))
-            assert options.pop("--node") == "NODE"
+            assert options.pop("--node") == "NODE" and options.pop("--baud") == "RATE"
             request = dcf.Request(
                 device=options.pop("--device"),
                 slot=options.pop("--slot", None),
