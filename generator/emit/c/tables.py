@@ -1,14 +1,15 @@
 """<device>_tables.h: the records of one device, and the numbers that its self-test prints of them."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from itertools import groupby
 
 from generator.emit.c.common import ERROR_KINDS, NO_RESPONSE, drive_prefix
 from generator.emit.c.device import DefaultRun, access_flags, code_defaults, device_prefix, error_mask
-from generator.emit.c.hashing import GOLDEN, mixed_kind, perfect_hash
 from generator.emit.c.prose import provenance
 from generator.emit.c.syntax import comment, integer, string
 from generator.emit.c.writer import Names, access, wire_limits
+from generator.emit.hashing import perfect_hash
 from generator.model import Code, Device, ErrorEntry, Model, NodeRelative, Slot
 from generator.naming import snake
 
@@ -16,9 +17,6 @@ _NAMES = (
     "codes",
     "defaults",
     "errors",
-    "error_seeds",
-    "error_places",
-    "error_runs",
     "baud_rates",
     "find_code",
     "find_code_by_index",
@@ -35,16 +33,21 @@ _BYTE = 256
 
 @dataclass(frozen=True, slots=True)
 class ErrorHash:
-    """Perfect hash of the single error numbers; ``places`` leads to their records."""
+    """Perfect hash of the error numbers of a kind; its places lead to their records.
 
-    kind_factor: str
-    bucket_factor: str
-    bucket_shift: str
+    ``stem`` begins the names of its tables and functions.  ``long`` are the places of runs that the hash leaves out.
+    """
+
+    kind: str
+    stem: str
+    factor: str
+    shift: str
+    seed_shift: str
     seeds: str
-    slot_factor: str
-    slot_shift: str
+    last_slot: str
     place_type: str
     places: str
+    long: str
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,8 +74,7 @@ class Tables:
     codes: tuple[str, ...]
     defaults: tuple[str, ...]
     errors: tuple[str, ...]
-    error_hash: ErrorHash | None
-    error_runs: str
+    error_hashes: tuple[ErrorHash, ...]
     index_base: str
     slots: tuple[SlotView, ...]
     baud_rates: str
@@ -96,8 +98,7 @@ def device_tables(model: Model, device: Device, names: Names) -> Tables:
         codes=tuple(_code(code) for code in device.codes),
         defaults=tuple(_run(code, run) for code in device.codes for run in code_defaults(code) if not run.shared),
         errors=tuple(_error(error, device) for error in errors),
-        error_hash=_hash(errors),
-        error_runs=", ".join(integer(place, 16) for place, error in enumerate(errors) if error.count > 1),
+        error_hashes=tuple(_hashes(errors, device, names)),
         index_base=f"{drive_prefix(device.drive)}_INDEX_BASE" if device.drive else "",
         slots=tuple(_slot(slot, device, names) for slot in device.slots),
         baud_rates=", ".join(integer(rate, 16) for rate in device.canopen.baud_rates) if device.canopen else "",
@@ -109,22 +110,28 @@ def _slot(slot: Slot, device: Device, names: Names) -> SlotView:
     return SlotView(comment(slot.name), function, f"{device_prefix(device)}_{slot.name}")
 
 
-def _hash(errors: Sequence[ErrorEntry]) -> ErrorHash | None:
-    singles = [place for place, error in enumerate(errors) if error.count == 1]
-    if not singles:
-        return None
-    keys = [mixed_kind(ERROR_KINDS.index(errors[place].kind), errors[place].number) for place in singles]
-    found = perfect_hash(keys)
-    return ErrorHash(
-        kind_factor=integer(GOLDEN, 32, hexadecimal=True),
-        bucket_factor=integer(found.first, 32, hexadecimal=True),
-        bucket_shift=integer(found.bucket_shift, 8),
-        seeds=", ".join(integer(seed, 8) for seed in found.seeds),
-        slot_factor=integer(found.second, 32, hexadecimal=True),
-        slot_shift=integer(found.slot_shift, 8),
-        place_type="uint8_t" if len(errors) <= _BYTE else "uint16_t",
-        places=", ".join(integer(singles[place], 16) for place in found.places),
-    )
+def _hashes(errors: Sequence[ErrorEntry], device: Device, names: Names) -> Iterator[ErrorHash]:
+    """Hashes of the kinds that the device has; ``errors`` are its records, sorted by kind."""
+    first = 0
+    for kind, group in groupby(errors, key=lambda error: error.kind):
+        runs = [(error.number, error.last) for error in group]
+        found = perfect_hash(runs)
+        stem = f"{device_prefix(device).lower()}_{kind}_error"
+        for name in ("seeds", "places", "long"):
+            names.claim(f"{stem}_{name}", device.where)
+        yield ErrorHash(
+            kind=f"DRIVESPEC_ERROR_{kind.upper()}",
+            stem=stem,
+            factor=integer(found.factor, 32, hexadecimal=True),
+            shift=integer(found.shift, 8),
+            seed_shift=integer(found.seed_shift, 8),
+            seeds=", ".join(integer(seed, 8) for seed in found.seeds),
+            last_slot=integer(len(found.places) - 1, 16),
+            place_type="uint8_t" if len(errors) <= _BYTE else "uint16_t",
+            places=", ".join(integer(first + place, 16) for place in found.places),
+            long=", ".join(integer(first + place, 16) for place in found.long),
+        )
+        first += len(runs)
 
 
 def sorted_errors(device: Device) -> list[ErrorEntry]:

@@ -294,12 +294,14 @@ static const drivespec_error e94aycca_errors[E94AYCCA_ERROR_COUNT] = {
     {"Dynamic generation of object directory not successful or no object directory available (e.g. object directory generated from file, generation not possible because of a file error)", UINT32_C(0x08000023), UINT32_C(0x08000023), DRIVESPEC_ERROR_SDO_ABORT, 255u},
 };
 
-/** Perfect hash of the single error numbers: seed by bucket, record by slot. */
-static const uint8_t e94aycca_error_seeds[] = {1u, 0u, 1u, 4u, 4u, 1u, 0u, 21u, 1u, 6u, 0u, 23u, 0u, 0u, 2u, 6u, 0u, 16u, 0u, 24u, 2u, 5u, 4u, 0u, 10u, 5u, 8u, 14u, 2u, 3u, 0u, 32u};
-static const uint8_t e94aycca_error_places[] = {0u, 75u, 78u, 7u, 21u, 6u, 0u, 59u, 0u, 0u, 0u, 0u, 41u, 0u, 0u, 61u, 70u, 0u, 56u, 0u, 0u, 0u, 0u, 23u, 40u, 0u, 66u, 20u, 0u, 2u, 22u, 57u, 0u, 0u, 0u, 67u, 4u, 49u, 43u, 73u, 72u, 3u, 0u, 0u, 53u, 24u, 68u, 34u, 32u, 33u, 35u, 31u, 14u, 15u, 36u, 12u, 19u, 69u, 55u, 13u, 44u, 18u, 11u, 37u, 39u, 17u, 64u, 16u, 0u, 38u, 0u, 0u, 30u, 0u, 0u, 63u, 45u, 0u, 79u, 60u, 0u, 10u, 0u, 42u, 77u, 1u, 65u, 50u, 58u, 54u, 0u, 0u, 48u, 0u, 0u, 51u, 0u, 0u, 74u, 0u, 62u, 0u, 28u, 0u, 8u, 0u, 0u, 76u, 0u, 71u, 47u, 0u, 0u, 0u, 46u, 52u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 26u, 27u, 0u, 0u};
+/** Perfect hash of the numbers of DRIVESPEC_ERROR_DEVICE: records by slot. */
+static const uint8_t e94aycca_device_error_places[] = {0u, 0u, 0u, 0u, 9u, 0u, 5u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 15u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 20u, 0u, 9u, 0u, 5u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 29u, 0u, 26u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 29u, 0u, 25u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 29u, 0u, 25u, 0u, 9u, 0u, 5u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 29u, 0u, 25u, 0u, 0u, 9u, 0u, 5u, 0u, 0u, 37u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 29u, 0u, 25u, 0u, 9u, 0u, 5u, 0u, 0u, 0u, 0u, 0u, 28u, 0u, 23u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 1u, 0u, 9u, 0u, 5u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 14u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 9u, 0u, 5u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 29u, 0u, 25u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 29u, 0u, 25u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 29u, 0u, 25u, 0u, 9u, 0u, 5u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 29u, 0u, 25u, 0u, 9u, 0u, 5u, 0u, 0u, 0u, 36u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 29u, 0u, 25u, 0u, 9u, 0u, 5u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 22u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 9u, 0u, 5u, 0u, 0u, 0u, 0u, 0u, 0u, 13u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 5u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 29u, 0u, 25u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 29u, 0u, 25u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 29u, 0u, 25u, 0u, 0u, 9u, 0u, 5u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 29u, 0u, 25u, 0u, 9u, 0u, 5u, 0u, 0u, 0u, 35u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 40u, 0u, 29u, 0u, 25u, 0u, 9u, 0u, 5u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 19u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 9u, 0u, 5u, 0u, 0u, 0u, 0u, 0u, 21u, 0u, 12u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 29u, 0u, 25u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 29u, 0u, 25u, 0u, 10u, 0u, 7u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 29u, 0u, 25u, 0u, 9u, 0u, 5u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 29u, 0u, 25u, 0u, 9u, 0u, 5u, 0u, 0u, 0u, 34u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 29u, 0u, 25u, 0u, 0u, 9u, 0u, 5u, 0u, 0u, 0u, 0u, 0u, 0u, 18u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 9u, 0u, 5u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 11u, 0u, 0u, 0u, 4u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 29u, 0u, 25u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 29u, 0u, 25u, 0u, 0u, 9u, 0u, 6u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 29u, 0u, 25u, 0u, 9u, 0u, 5u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 29u, 0u, 25u, 0u, 9u, 0u, 5u, 0u, 0u, 0u, 33u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 25u, 0u, 9u, 0u, 5u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 17u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 9u, 0u, 5u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 8u, 0u, 3u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 29u, 0u, 25u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 29u, 0u, 25u, 0u, 9u, 0u, 5u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 29u, 0u, 25u, 0u, 9u, 0u, 5u, 0u, 0u, 0u, 39u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 29u, 0u, 25u, 0u, 0u, 9u, 0u, 5u, 41u, 0u, 32u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 9u, 0u, 5u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 16u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 9u, 0u, 5u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 2u, 30u, 0u, 27u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 29u, 0u, 25u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 29u, 0u, 25u, 0u, 9u, 0u, 5u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 29u, 0u, 25u, 0u, 9u, 0u, 5u, 0u, 0u, 0u, 38u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 29u, 0u, 25u, 0u, 9u, 0u, 5u, 0u, 0u, 0u, 31u, 0u, 0u, 0u, 24u, 0u, 0u, 0u, 0u, 0u, 0u, 0u};
 
-/** Records of runs of error numbers. */
-static const uint16_t e94aycca_error_runs[] = {5u, 9u, 25u, 29u};
+/** Perfect hash of the numbers of DRIVESPEC_ERROR_EMERGENCY: records by slot. */
+static const uint8_t e94aycca_emergency_error_places[] = {42u, 42u, 47u, 44u, 46u, 48u, 42u, 42u, 42u, 42u, 42u, 43u, 49u, 50u, 42u, 45u};
+
+/** Perfect hash of the numbers of DRIVESPEC_ERROR_SDO_ABORT: records by slot. */
+static const uint8_t e94aycca_sdo_abort_error_places[] = {75u, 51u, 51u, 51u, 58u, 59u, 60u, 51u, 61u, 51u, 51u, 51u, 51u, 51u, 51u, 51u, 52u, 53u, 54u, 55u, 56u, 57u, 51u, 51u, 66u, 51u, 51u, 51u, 51u, 51u, 51u, 51u, 76u, 77u, 78u, 79u, 51u, 51u, 51u, 51u, 51u, 51u, 51u, 51u, 67u, 51u, 68u, 69u, 51u, 51u, 51u, 51u, 51u, 70u, 51u, 51u, 51u, 51u, 51u, 51u, 51u, 51u, 51u, 51u, 51u, 51u, 51u, 51u, 51u, 51u, 51u, 51u, 51u, 51u, 51u, 51u, 51u, 51u, 51u, 51u, 51u, 62u, 63u, 64u, 71u, 72u, 73u, 65u, 51u, 51u, 74u, 51u, 51u, 51u, 51u, 51u, 51u, 51u, 51u, 51u, 51u, 51u, 51u, 51u, 51u, 51u, 51u, 51u, 51u, 51u, 51u, 51u, 51u, 51u, 51u, 51u, 51u, 51u, 51u, 51u, 51u, 51u, 51u, 51u, 51u, 51u, 51u, 51u};
 
 /**
  * Record of an error number, NULL where there is none.
@@ -307,23 +309,26 @@ static const uint16_t e94aycca_error_runs[] = {5u, 9u, 25u, 29u};
  */
 static inline const drivespec_error *e94aycca_find_error(uint8_t kind, uint32_t number)
 {
-    const drivespec_error *const errors = e94aycca_errors;
+    const drivespec_error *found = NULL;
+    uint32_t hash = number;
 
-    const uint32_t key = number ^ (uint32_t)(kind * UINT32_C(0x9E3779B1));
-    const uint32_t bucket = (uint32_t)(key * UINT32_C(0x9E3779B1)) >> 27u;
-    const uint32_t factor = UINT32_C(0xFFE6CC61) + 2u * (uint32_t)e94aycca_error_seeds[bucket];
-    const uint32_t slot = (uint32_t)((key ^ (key >> 15)) * factor) >> 25u;
-    const drivespec_error *const single = &errors[e94aycca_error_places[slot]];
-    if ((single->first == number) && (single->kind == kind)) {
-        return single;
+    switch (kind) {
+    case DRIVESPEC_ERROR_DEVICE:
+        hash = (uint32_t)(hash * UINT32_C(0xDAA66D13)) >> 22u;
+        found = &e94aycca_errors[e94aycca_device_error_places[hash]];
+        break;
+    case DRIVESPEC_ERROR_EMERGENCY:
+        hash = (uint32_t)(hash * UINT32_C(0x36FBEEE7)) >> 28u;
+        found = &e94aycca_errors[e94aycca_emergency_error_places[hash]];
+        break;
+    case DRIVESPEC_ERROR_SDO_ABORT:
+        hash = (uint32_t)(hash * UINT32_C(0x02000800)) >> 25u;
+        found = &e94aycca_errors[e94aycca_sdo_abort_error_places[hash]];
+        break;
+    default:
+        return NULL;
     }
-    for (size_t i = 0u; i < sizeof e94aycca_error_runs / sizeof e94aycca_error_runs[0]; i++) {
-        const drivespec_error *const run = &errors[e94aycca_error_runs[i]];
-        if ((run->kind == kind) && (run->first <= number) && (number <= run->last)) {
-            return run;
-        }
-    }
-    return NULL;
+    return ((number - found->first) <= (found->last - found->first)) ? found : NULL;
 }
 
 /** Record of a number as the drive reports it, whatever its response and instance; NULL where there is none. */

@@ -149,24 +149,24 @@ static const drivespec_error e94aycen_errors[E94AYCEN_ERROR_COUNT] = {
     {"Unknown client response", UINT32_C(0x00009014), UINT32_C(0x00009014), DRIVESPEC_ERROR_GCI, 255u},
 };
 
-/** Perfect hash of the single error numbers: seed by bucket, record by slot. */
-static const uint8_t e94aycen_error_seeds[] = {0u, 0u, 0u, 0u, 3u, 6u, 1u, 0u, 0u, 0u, 0u, 4u, 3u, 2u, 0u, 2u};
-static const uint8_t e94aycen_error_places[] = {24u, 0u, 0u, 33u, 0u, 0u, 0u, 5u, 3u, 0u, 0u, 26u, 0u, 0u, 30u, 31u, 0u, 0u, 15u, 25u, 0u, 13u, 19u, 0u, 10u, 0u, 23u, 0u, 0u, 27u, 1u, 0u, 0u, 16u, 2u, 0u, 0u, 20u, 18u, 0u, 0u, 7u, 8u, 0u, 28u, 0u, 0u, 14u, 32u, 6u, 0u, 0u, 17u, 22u, 0u, 0u, 4u, 9u, 0u, 12u, 11u, 21u, 0u, 29u};
+/** Perfect hash of the numbers of DRIVESPEC_ERROR_GCI: records by slot. */
+static const uint8_t e94aycen_gci_error_places[] = {0u, 26u, 0u, 6u, 31u, 13u, 0u, 0u, 11u, 0u, 19u, 0u, 0u, 24u, 4u, 0u, 29u, 0u, 0u, 0u, 0u, 0u, 17u, 9u, 22u, 0u, 2u, 27u, 0u, 7u, 32u, 0u, 0u, 15u, 0u, 1u, 20u, 0u, 0u, 25u, 10u, 5u, 30u, 0u, 0u, 0u, 0u, 0u, 18u, 14u, 0u, 23u, 3u, 0u, 28u, 12u, 33u, 0u, 0u, 16u, 0u, 8u, 21u, 0u};
 
 /** Record of an error number, NULL where there is none. */
 static inline const drivespec_error *e94aycen_find_error(uint8_t kind, uint32_t number)
 {
-    const drivespec_error *const errors = e94aycen_errors;
+    const drivespec_error *found = NULL;
+    uint32_t hash = number;
 
-    const uint32_t key = number ^ (uint32_t)(kind * UINT32_C(0x9E3779B1));
-    const uint32_t bucket = (uint32_t)(key * UINT32_C(0x9E3779B3)) >> 28u;
-    const uint32_t factor = UINT32_C(0x3C55BFC3) + 2u * (uint32_t)e94aycen_error_seeds[bucket];
-    const uint32_t slot = (uint32_t)((key ^ (key >> 15)) * factor) >> 26u;
-    const drivespec_error *const single = &errors[e94aycen_error_places[slot]];
-    if ((single->first == number) && (single->kind == kind)) {
-        return single;
+    switch (kind) {
+    case DRIVESPEC_ERROR_GCI:
+        hash = (uint32_t)(hash * UINT32_C(0x68B4D115)) >> 26u;
+        found = &e94aycen_errors[e94aycen_gci_error_places[hash]];
+        break;
+    default:
+        return NULL;
     }
-    return NULL;
+    return ((number - found->first) <= (found->last - found->first)) ? found : NULL;
 }
 
 #endif

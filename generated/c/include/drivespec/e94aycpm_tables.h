@@ -201,12 +201,14 @@ static const drivespec_error e94aycpm_errors[E94AYCPM_ERROR_COUNT] = {
     {"Manufacturer-specific", UINT32_C(0x00000065), UINT32_C(0x000000FF), DRIVESPEC_ERROR_DPV1, 255u},
 };
 
-/** Perfect hash of the single error numbers: seed by bucket, record by slot. */
-static const uint8_t e94aycpm_error_seeds[] = {1u, 11u, 3u, 8u, 13u, 1u, 0u, 9u, 15u, 7u, 17u, 2u, 5u, 36u, 1u, 25u, 2u, 34u, 1u, 21u, 59u, 0u, 0u, 10u, 6u, 69u, 6u, 53u, 7u, 2u, 83u, 12u};
-static const uint8_t e94aycpm_error_places[] = {11u, 13u, 46u, 12u, 0u, 29u, 5u, 4u, 16u, 45u, 7u, 6u, 39u, 43u, 0u, 8u, 33u, 51u, 0u, 49u, 34u, 25u, 3u, 2u, 1u, 0u, 28u, 40u, 0u, 23u, 31u, 44u, 0u, 15u, 37u, 0u, 0u, 47u, 41u, 24u, 30u, 42u, 0u, 10u, 36u, 9u, 0u, 38u, 50u, 26u, 17u, 22u, 20u, 14u, 0u, 32u, 0u, 19u, 18u, 27u, 0u, 35u, 21u, 48u};
+/** Perfect hash of the numbers of DRIVESPEC_ERROR_DEVICE: records by slot. */
+static const uint8_t e94aycpm_device_error_places[] = {8u, 0u, 0u, 0u, 9u, 12u, 0u, 2u, 0u, 0u, 0u, 0u, 4u, 10u, 13u, 6u, 3u, 0u, 0u, 0u, 0u, 5u, 0u, 0u, 7u, 0u, 0u, 0u, 11u, 0u, 1u, 0u};
 
-/** Records of runs of error numbers. */
-static const uint16_t e94aycpm_error_runs[] = {52u, 53u};
+/** Perfect hash of the numbers of DRIVESPEC_ERROR_DPV0: records by slot. */
+static const uint8_t e94aycpm_dpv0_error_places[] = {14u, 21u, 15u, 14u, 25u, 14u, 14u, 16u, 14u, 14u, 14u, 14u, 22u, 17u, 14u, 14u, 14u, 20u, 26u, 14u, 14u, 14u, 14u, 14u, 14u, 23u, 19u, 14u, 14u, 18u, 14u, 24u};
+
+/** Perfect hash of the numbers of DRIVESPEC_ERROR_DPV1: records by slot. */
+static const uint8_t e94aycpm_dpv1_error_places[] = {27u, 28u, 29u, 30u, 31u, 32u, 33u, 34u, 35u, 36u, 37u, 38u, 39u, 40u, 41u, 42u, 43u, 44u, 45u, 46u, 47u, 48u, 49u, 50u, 51u, 52u, 52u, 52u, 52u, 52u, 52u, 52u, 52u, 52u, 52u, 52u, 52u, 52u, 52u, 52u, 52u, 52u, 52u, 52u, 52u, 52u, 52u, 52u, 52u, 52u, 52u, 52u, 52u, 52u, 52u, 52u, 52u, 52u, 52u, 52u, 52u, 52u, 52u, 52u, 52u, 52u, 52u, 52u, 52u, 52u, 52u, 52u, 52u, 52u, 52u, 52u, 52u, 52u, 52u, 52u, 52u, 52u, 52u, 52u, 52u, 52u, 52u, 52u, 52u, 52u, 52u, 52u, 52u, 52u, 52u, 52u, 52u, 52u, 52u, 52u, 52u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u};
 
 /**
  * Record of an error number, NULL where there is none.
@@ -214,23 +216,26 @@ static const uint16_t e94aycpm_error_runs[] = {52u, 53u};
  */
 static inline const drivespec_error *e94aycpm_find_error(uint8_t kind, uint32_t number)
 {
-    const drivespec_error *const errors = e94aycpm_errors;
+    const drivespec_error *found = NULL;
+    uint32_t hash = number;
 
-    const uint32_t key = number ^ (uint32_t)(kind * UINT32_C(0x9E3779B1));
-    const uint32_t bucket = (uint32_t)(key * UINT32_C(0x9E3779B1)) >> 27u;
-    const uint32_t factor = UINT32_C(0xFFE6CC61) + 2u * (uint32_t)e94aycpm_error_seeds[bucket];
-    const uint32_t slot = (uint32_t)((key ^ (key >> 15)) * factor) >> 26u;
-    const drivespec_error *const single = &errors[e94aycpm_error_places[slot]];
-    if ((single->first == number) && (single->kind == kind)) {
-        return single;
+    switch (kind) {
+    case DRIVESPEC_ERROR_DEVICE:
+        hash = (uint32_t)(hash * UINT32_C(0x489E4AE1)) >> 27u;
+        found = &e94aycpm_errors[e94aycpm_device_error_places[hash]];
+        break;
+    case DRIVESPEC_ERROR_DPV0:
+        hash = (uint32_t)(hash * UINT32_C(0x2C15E5F1)) >> 27u;
+        found = &e94aycpm_errors[e94aycpm_dpv0_error_places[hash]];
+        break;
+    case DRIVESPEC_ERROR_DPV1:
+        hash = (uint32_t)(hash * UINT32_C(0x01000000)) >> 24u;
+        found = &e94aycpm_errors[e94aycpm_dpv1_error_places[hash]];
+        break;
+    default:
+        return NULL;
     }
-    for (size_t i = 0u; i < sizeof e94aycpm_error_runs / sizeof e94aycpm_error_runs[0]; i++) {
-        const drivespec_error *const run = &errors[e94aycpm_error_runs[i]];
-        if ((run->kind == kind) && (run->first <= number) && (number <= run->last)) {
-            return run;
-        }
-    }
-    return NULL;
+    return ((number - found->first) <= (found->last - found->first)) ? found : NULL;
 }
 
 /** Record of a number as the drive reports it, whatever its response and instance; NULL where there is none. */

@@ -33,24 +33,31 @@ static const drivespec_error servo931_errors[SERVO931_ERROR_COUNT] = {
     {"Data cannot be transferred/saved to the application due to current device state.", UINT32_C(0x08000022), UINT32_C(0x08000022), DRIVESPEC_ERROR_SDO_ABORT, 255u},
 };
 
-/** Perfect hash of the single error numbers: seed by bucket, record by slot. */
-static const uint8_t servo931_error_seeds[] = {1u, 0u, 1u, 2u, 2u, 0u, 5u, 1u};
-static const uint8_t servo931_error_places[] = {16u, 0u, 0u, 0u, 10u, 0u, 14u, 2u, 0u, 0u, 12u, 9u, 0u, 0u, 7u, 5u, 3u, 0u, 0u, 15u, 0u, 6u, 1u, 0u, 11u, 0u, 4u, 13u, 0u, 8u, 0u, 0u};
+/** Perfect hash of the numbers of DRIVESPEC_ERROR_EMERGENCY: records by slot. */
+static const uint8_t servo931_emergency_error_places[] = {0u, 0u};
+
+/** Perfect hash of the numbers of DRIVESPEC_ERROR_SDO_ABORT: records by slot. */
+static const uint8_t servo931_sdo_abort_error_places[] = {11u, 1u, 1u, 2u, 12u, 1u, 1u, 3u, 1u, 13u, 5u, 1u, 7u, 1u, 6u, 14u, 1u, 1u, 10u, 15u, 1u, 8u, 1u, 1u, 16u, 1u, 9u, 1u, 1u, 1u, 1u, 4u};
 
 /** Record of an error number, NULL where there is none. */
 static inline const drivespec_error *servo931_find_error(uint8_t kind, uint32_t number)
 {
-    const drivespec_error *const errors = servo931_errors;
+    const drivespec_error *found = NULL;
+    uint32_t hash = number;
 
-    const uint32_t key = number ^ (uint32_t)(kind * UINT32_C(0x9E3779B1));
-    const uint32_t bucket = (uint32_t)(key * UINT32_C(0x9E3779B1)) >> 29u;
-    const uint32_t factor = UINT32_C(0xFFE6CC61) + 2u * (uint32_t)servo931_error_seeds[bucket];
-    const uint32_t slot = (uint32_t)((key ^ (key >> 15)) * factor) >> 27u;
-    const drivespec_error *const single = &errors[servo931_error_places[slot]];
-    if ((single->first == number) && (single->kind == kind)) {
-        return single;
+    switch (kind) {
+    case DRIVESPEC_ERROR_EMERGENCY:
+        hash = (uint32_t)(hash * UINT32_C(0x80000000)) >> 31u;
+        found = &servo931_errors[servo931_emergency_error_places[hash]];
+        break;
+    case DRIVESPEC_ERROR_SDO_ABORT:
+        hash = (uint32_t)(hash * UINT32_C(0x248E067D)) >> 27u;
+        found = &servo931_errors[servo931_sdo_abort_error_places[hash]];
+        break;
+    default:
+        return NULL;
     }
-    return NULL;
+    return ((number - found->first) <= (found->last - found->first)) ? found : NULL;
 }
 
 /** Bit rates supported, in kbit/s. */
