@@ -49,10 +49,16 @@ def test_perfect_hashes_find_each_number_and_no_other() -> None:
         sparse = [(number, number) for number in rng.sample(range(2**32), size)]
         clustered = [(key, key) for key in (number // 25 << 16 | number % 25 for number in range(size))]
         runs = [(number << 20, (number << 20) + rng.choice((0, 31, 255, 256, 2**19))) for number in range(size)]
-        for keys in (sparse, clustered, runs):
+        dense = [(3 * number + 7, 3 * number + 9) for number in range(size)]
+        for keys in (sparse, clustered, runs, dense):
             probes = [*(end for run in keys for end in run), *rng.sample(range(2**32), 1000)]
             expected = {p: at for p in probes for at, (first, last) in enumerate(keys) if first <= p <= last}
             assert hits(keys, probes) == expected
+
+
+def test_numbers_without_gaps_are_their_index() -> None:
+    found = perfect_hash([(7, 9), (10, 10), (11, 12)])
+    assert (found.first, found.places) == (7, (0, 0, 0, 1, 2, 2))
 
 
 def test_perfect_hashes_of_numbers_without_a_pattern_have_seeds() -> None:

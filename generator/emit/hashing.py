@@ -27,8 +27,11 @@ class PerfectHash:
     """Slot of a number: ``number * factor`` above ``shift``, changed by the seed above ``seed_shift`` where seeds are.
 
     ``places`` holds for each slot the place of the one run that can hold the number, 0 where no run leads.
-    ``long`` holds the places of the runs that have to be compared one by one.
+    ``long`` holds the places of the runs that have to be compared one by one.  ``first`` is the first number where
+    there are no gaps: ``places`` then holds the place of each number in order, and all else is 0.
     """
+
+    first: int | None
 
     factor: int
     shift: int
@@ -39,6 +42,8 @@ class PerfectHash:
 
     def find(self, number: int) -> int:
         """Place of the one run in the table that can hold the number."""
+        if self.first is not None:
+            return self.places[min(number - self.first & _WORD, len(self.places) - 1)]
         scattered = _scatter(number, self.factor)
         seed = self.seeds[scattered >> self.seed_shift] if self.seeds else 0
         return self.places[_slot(scattered, self.shift, seed, len(self.places))]
@@ -62,7 +67,14 @@ def perfect_hash(runs: Sequence[tuple[int, int]]) -> PerfectHash:
         if place not in long
         for number in range(first, last + 1)
     ]
-    return _arithmetic(keys, long) or _seeded(keys, long)
+    return _without_gaps(keys, long) or _arithmetic(keys, long) or _seeded(keys, long)
+
+
+def _without_gaps(keys: Sequence[tuple[int, int]], long: tuple[int, ...]) -> PerfectHash | None:
+    ordered = sorted(keys)
+    if long or ordered[-1][0] - ordered[0][0] >= len(ordered):
+        return None
+    return PerfectHash(ordered[0][0], 0, 0, 0, (), tuple(place for _, place in ordered), ())
 
 
 def _arithmetic(keys: Sequence[tuple[int, int]], long: tuple[int, ...]) -> PerfectHash | None:
@@ -74,7 +86,7 @@ def _arithmetic(keys: Sequence[tuple[int, int]], long: tuple[int, ...]) -> Perfe
             shift = _BITS - bits
             slots: dict[int, int] = {}
             if all(slots.setdefault(_scatter(key, factor) >> shift, place) == place for key, place in keys):
-                return PerfectHash(factor, shift, 0, (), _filled(slots, bits), long)
+                return PerfectHash(None, factor, shift, 0, (), _filled(slots, bits), long)
     return None
 
 
@@ -122,7 +134,7 @@ def _try_seeds(
             return None
         seeds[bucket] = seed
         slots |= taken
-    return PerfectHash(factor, shift, seed_shift, tuple(seeds), _filled(slots, bits), long)
+    return PerfectHash(None, factor, shift, seed_shift, tuple(seeds), _filled(slots, bits), long)
 
 
 def _filled(slots: dict[int, int], bits: int) -> tuple[int, ...]:

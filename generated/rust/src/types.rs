@@ -1268,6 +1268,8 @@ impl ObjectTable {
 /// Perfect hash of the error numbers of one kind: the one place where an entry can be.
 #[derive(Clone, Copy, Debug)]
 pub struct ErrorIndex {
+    /// First number where there are no gaps: the slots are then the numbers in order, and nothing is scattered.
+    pub first: Option<u32>,
     /// The number times this is scattered over 32 bits.
     pub factor: u32,
     /// Bits of the scattered number above this are the slot, changed by a seed where there are seeds.
@@ -1276,14 +1278,15 @@ pub struct ErrorIndex {
     pub seed_shift: u32,
     /// Seeds, or none.
     pub seeds: &'static [u8],
-    /// Position of the entry of each slot; their number is a power of two.
+    /// Position of the entry of each slot; their number is a power of two where numbers are scattered.
     pub places: &'static [u16],
     /// Positions of the runs that are too long for the slots.
     pub long: &'static [u16],
 }
 
 impl ErrorIndex {
-    #[inline]
+    // Always inlined, since the tables are constants: nothing of them but the slots is left then.
+    #[inline(always)]
     const fn place(&self, number: u32) -> usize {
         let scattered = number.wrapping_mul(self.factor);
         let mut slot = scattered >> self.shift;
@@ -1331,8 +1334,9 @@ impl ErrorTable {
         index: ErrorIndex,
     ) -> Self {
         assert!(help.len() == entries.len(), "each entry has its help");
-        assert!(index.places.len().is_power_of_two(), "the slots fill a number of bits");
+        assert!(index.first.is_some() || index.places.len().is_power_of_two(), "the slots fill a number of bits");
         let mut position = 0;
+        let mut slots = 0;
         while position < entries.len() {
             let entry = &entries[position];
             assert!(entry.number <= entry.last, "a run must ascend");
@@ -1340,7 +1344,12 @@ impl ErrorTable {
             assert!(position == 0 || entries[position - 1].last < entry.number, "runs must ascend and not overlap");
             let mut number = entry.number;
             while !index.is_long(position) {
-                assert!(index.place(number) == position, "the index must lead to each number");
+                let place = match index.first {
+                    Some(first) => index.places[number.wrapping_sub(first) as usize] as usize,
+                    None => index.place(number),
+                };
+                assert!(place == position, "the index must lead to each number");
+                slots += 1;
                 if number == entry.last {
                     break;
                 }
@@ -1348,6 +1357,7 @@ impl ErrorTable {
             }
             position += 1;
         }
+        assert!(index.first.is_none() || index.places.len() == slots, "numbers without gaps have a slot each");
         Self { kind, mask, entries, help, index }
     }
 
@@ -1363,9 +1373,12 @@ impl ErrorTable {
         self.mask
     }
 
-    #[inline]
+    #[inline(always)]
     fn position(&self, number: u32) -> Option<usize> {
         let number = number & self.mask;
+        if let Some(first) = self.index.first {
+            return self.index.places.get(number.wrapping_sub(first) as usize).map(|place| usize::from(*place));
+        }
         let holds = |place: usize| {
             let entry = &self.entries[place];
             number.wrapping_sub(entry.number) <= entry.last - entry.number
@@ -1378,7 +1391,7 @@ impl ErrorTable {
     }
 
     /// Entry of a number as the device reports it; bits outside [`mask`](Self::mask) do not matter.
-    #[inline]
+    #[inline(always)]
     #[must_use]
     pub fn get(&self, number: u32) -> Option<&'static ErrorEntry> {
         self.position(number).map(|position| &self.entries[position])

@@ -35,11 +35,13 @@ _BYTE = 256
 class ErrorHash:
     """Perfect hash of the error numbers of a kind; its places lead to their records.
 
-    ``stem`` begins the names of its tables and functions.  ``long`` are the places of runs that the hash leaves out.
+    ``stem`` begins the names of its tables.  ``first`` is the first number where there are no gaps, else empty.
+    ``long`` are the places of runs that the hash leaves out.
     """
 
     kind: str
     stem: str
+    first: str
     factor: str
     shift: str
     seed_shift: str
@@ -122,11 +124,12 @@ def _hashes(errors: Sequence[ErrorEntry], device: Device, names: Names) -> Itera
         yield ErrorHash(
             kind=f"DRIVESPEC_ERROR_{kind.upper()}",
             stem=stem,
+            first="" if found.first is None else integer(found.first, 32, hexadecimal=True),
             factor=integer(found.factor, 32, hexadecimal=True),
             shift=integer(found.shift, 8),
             seed_shift=integer(found.seed_shift, 8),
             seeds=", ".join(integer(seed, 8) for seed in found.seeds),
-            last_slot=integer(len(found.places) - 1, 16),
+            last_slot=integer(len(found.places) - 1, 32),
             place_type="uint8_t" if len(errors) <= _BYTE else "uint16_t",
             places=", ".join(integer(first + place, 16) for place in found.places),
             long=", ".join(integer(first + place, 16) for place in found.long),

@@ -345,6 +345,7 @@ def _index(index: PerfectHash) -> Expression:
     return struct(
         "ErrorIndex",
         (
+            ("first", "None" if index.first is None else some(hexadecimal(index.first, 8))),
             ("factor", hexadecimal(index.factor, 8)),
             ("shift", str(index.shift)),
             ("seed_shift", str(index.seed_shift)),

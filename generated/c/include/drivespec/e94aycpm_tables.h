@@ -207,7 +207,7 @@ static const uint8_t e94aycpm_device_error_places[] = {8u, 0u, 0u, 0u, 9u, 12u, 
 /** Perfect hash of the numbers of DRIVESPEC_ERROR_DPV0: records by slot. */
 static const uint8_t e94aycpm_dpv0_error_places[] = {14u, 21u, 15u, 14u, 25u, 14u, 14u, 16u, 14u, 14u, 14u, 14u, 22u, 17u, 14u, 14u, 14u, 20u, 26u, 14u, 14u, 14u, 14u, 14u, 14u, 23u, 19u, 14u, 14u, 18u, 14u, 24u};
 
-/** Perfect hash of the numbers of DRIVESPEC_ERROR_DPV1: records by slot. */
+/** Records of the numbers of DRIVESPEC_ERROR_DPV1. */
 static const uint8_t e94aycpm_dpv1_error_places[] = {27u, 28u, 29u, 30u, 31u, 32u, 33u, 34u, 35u, 36u, 37u, 38u, 39u, 40u, 41u, 42u, 43u, 44u, 45u, 46u, 47u, 48u, 49u, 50u, 51u, 52u, 52u, 52u, 52u, 52u, 52u, 52u, 52u, 52u, 52u, 52u, 52u, 52u, 52u, 52u, 52u, 52u, 52u, 52u, 52u, 52u, 52u, 52u, 52u, 52u, 52u, 52u, 52u, 52u, 52u, 52u, 52u, 52u, 52u, 52u, 52u, 52u, 52u, 52u, 52u, 52u, 52u, 52u, 52u, 52u, 52u, 52u, 52u, 52u, 52u, 52u, 52u, 52u, 52u, 52u, 52u, 52u, 52u, 52u, 52u, 52u, 52u, 52u, 52u, 52u, 52u, 52u, 52u, 52u, 52u, 52u, 52u, 52u, 52u, 52u, 52u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u, 53u};
 
 /**
@@ -229,9 +229,8 @@ static inline const drivespec_error *e94aycpm_find_error(uint8_t kind, uint32_t 
         found = &e94aycpm_errors[e94aycpm_dpv0_error_places[hash]];
         break;
     case DRIVESPEC_ERROR_DPV1:
-        hash = (uint32_t)(hash * UINT32_C(0x01000000)) >> 24u;
-        found = &e94aycpm_errors[e94aycpm_dpv1_error_places[hash]];
-        break;
+        hash = number - UINT32_C(0x00000000);
+        return (hash <= UINT32_C(255)) ? &e94aycpm_errors[e94aycpm_dpv1_error_places[hash]] : NULL;
     default:
         return NULL;
     }

@@ -33,8 +33,8 @@ static const drivespec_error servo931_errors[SERVO931_ERROR_COUNT] = {
     {"Data cannot be transferred/saved to the application due to current device state.", UINT32_C(0x08000022), UINT32_C(0x08000022), DRIVESPEC_ERROR_SDO_ABORT, 255u},
 };
 
-/** Perfect hash of the numbers of DRIVESPEC_ERROR_EMERGENCY: records by slot. */
-static const uint8_t servo931_emergency_error_places[] = {0u, 0u};
+/** Records of the numbers of DRIVESPEC_ERROR_EMERGENCY. */
+static const uint8_t servo931_emergency_error_places[] = {0u};
 
 /** Perfect hash of the numbers of DRIVESPEC_ERROR_SDO_ABORT: records by slot. */
 static const uint8_t servo931_sdo_abort_error_places[] = {11u, 1u, 1u, 2u, 12u, 1u, 1u, 3u, 1u, 13u, 5u, 1u, 7u, 1u, 6u, 14u, 1u, 1u, 10u, 15u, 1u, 8u, 1u, 1u, 16u, 1u, 9u, 1u, 1u, 1u, 1u, 4u};
@@ -47,9 +47,8 @@ static inline const drivespec_error *servo931_find_error(uint8_t kind, uint32_t 
 
     switch (kind) {
     case DRIVESPEC_ERROR_EMERGENCY:
-        hash = (uint32_t)(hash * UINT32_C(0x80000000)) >> 31u;
-        found = &servo931_errors[servo931_emergency_error_places[hash]];
-        break;
+        hash = number - UINT32_C(0x00008120);
+        return (hash <= UINT32_C(0)) ? &servo931_errors[servo931_emergency_error_places[hash]] : NULL;
     case DRIVESPEC_ERROR_SDO_ABORT:
         hash = (uint32_t)(hash * UINT32_C(0x248E067D)) >> 27u;
         found = &servo931_errors[servo931_sdo_abort_error_places[hash]];

@@ -1888,7 +1888,7 @@ const PLACES: &[u16] = &[
 ];
 
 const INDEX: ErrorIndex =
-    ErrorIndex { factor: 0xDAA6_6D13, shift: 22, seed_shift: 0, seeds: &[], places: PLACES, long: &[] };
+    ErrorIndex { first: None, factor: 0xDAA6_6D13, shift: 22, seed_shift: 0, seeds: &[], places: PLACES, long: &[] };
 
 /// All errors of the kind, found by number.
 pub const TABLE: ErrorTable = ErrorTable::new("device", 0x03FF_FFFF, ENTRIES, HELP, INDEX);

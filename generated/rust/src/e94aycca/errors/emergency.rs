@@ -192,7 +192,7 @@ const PLACES: &[u16] = &[
 ];
 
 const INDEX: ErrorIndex =
-    ErrorIndex { factor: 0x36FB_EEE7, shift: 28, seed_shift: 0, seeds: &[], places: PLACES, long: &[] };
+    ErrorIndex { first: None, factor: 0x36FB_EEE7, shift: 28, seed_shift: 0, seeds: &[], places: PLACES, long: &[] };
 
 /// All errors of the kind, found by number.
 pub const TABLE: ErrorTable = ErrorTable::new("emergency", 0xFFFF_FFFF, ENTRIES, HELP, INDEX);

@@ -428,7 +428,7 @@ const PLACES: &[u16] = &[
 ];
 
 const INDEX: ErrorIndex =
-    ErrorIndex { factor: 0x489E_4AE1, shift: 27, seed_shift: 0, seeds: &[], places: PLACES, long: &[] };
+    ErrorIndex { first: None, factor: 0x489E_4AE1, shift: 27, seed_shift: 0, seeds: &[], places: PLACES, long: &[] };
 
 /// All errors of the kind, found by number.
 pub const TABLE: ErrorTable = ErrorTable::new("device", 0x03FF_FFFF, ENTRIES, HELP, INDEX);

@@ -318,7 +318,7 @@ const PLACES: &[u16] = &[
 ];
 
 const INDEX: ErrorIndex =
-    ErrorIndex { factor: 0x2C15_E5F1, shift: 27, seed_shift: 0, seeds: &[], places: PLACES, long: &[] };
+    ErrorIndex { first: None, factor: 0x2C15_E5F1, shift: 27, seed_shift: 0, seeds: &[], places: PLACES, long: &[] };
 
 /// All errors of the kind, found by number.
 pub const TABLE: ErrorTable = ErrorTable::new("dpv0", 0xFFFF_FFFF, ENTRIES, HELP, INDEX);

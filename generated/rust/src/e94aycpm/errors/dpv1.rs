@@ -490,8 +490,15 @@ const PLACES: &[u16] = &[
     26, 26, 26, 26, 26, 26, 26, 26, 26, 26, 26, 26, 26, 26, 26, 26, 26, 26, 26, 26, 26, 26,
 ];
 
-const INDEX: ErrorIndex =
-    ErrorIndex { factor: 0x0100_0000, shift: 24, seed_shift: 0, seeds: &[], places: PLACES, long: &[] };
+const INDEX: ErrorIndex = ErrorIndex {
+    first: Some(0x0000_0000),
+    factor: 0x0000_0000,
+    shift: 0,
+    seed_shift: 0,
+    seeds: &[],
+    places: PLACES,
+    long: &[],
+};
 
 /// All errors of the kind, found by number.
 pub const TABLE: ErrorTable = ErrorTable::new("dpv1", 0xFFFF_FFFF, ENTRIES, HELP, INDEX);

@@ -36,11 +36,18 @@ const HELP: &[Help] = &[Help {
 
 #[rustfmt::skip]
 const PLACES: &[u16] = &[
-    0, 0,
+    0,
 ];
 
-const INDEX: ErrorIndex =
-    ErrorIndex { factor: 0x8000_0000, shift: 31, seed_shift: 0, seeds: &[], places: PLACES, long: &[] };
+const INDEX: ErrorIndex = ErrorIndex {
+    first: Some(0x0000_8120),
+    factor: 0x0000_0000,
+    shift: 0,
+    seed_shift: 0,
+    seeds: &[],
+    places: PLACES,
+    long: &[],
+};
 
 /// All errors of the kind, found by number.
 pub const TABLE: ErrorTable = ErrorTable::new("emergency", 0xFFFF_FFFF, ENTRIES, HELP, INDEX);

@@ -258,7 +258,7 @@ const PLACES: &[u16] = &[
 ];
 
 const INDEX: ErrorIndex =
-    ErrorIndex { factor: 0x248E_067D, shift: 27, seed_shift: 0, seeds: &[], places: PLACES, long: &[] };
+    ErrorIndex { first: None, factor: 0x248E_067D, shift: 27, seed_shift: 0, seeds: &[], places: PLACES, long: &[] };
 
 /// All errors of the kind, found by number.
 pub const TABLE: ErrorTable = ErrorTable::new("sdo_abort", 0xFFFF_FFFF, ENTRIES, HELP, INDEX);
