@@ -106,11 +106,12 @@ def test_lookup_of_numbers_without_a_pattern_and_of_long_runs(model: Model, tmp_
                 expected[key] = others[0] if others else "-"
                 rows.append(f"{{ {kinds[error.kind]}u, UINT32_C({number % 2**32}) }}")
     body = (
+        f"    const char *texts = (const char *)&{device.id}_error_texts;\n"
         f"    static const uint32_t asked[][2] = {{ {', '.join(rows)} }};\n"
         "    for (size_t i = 0u; i < sizeof asked / sizeof asked[0]; i++) {\n"
         f"        const drivespec_error *e = {device.id}_find_error((uint8_t)asked[i][0], asked[i][1]);\n"
         '        printf("%u %lu=", (unsigned)asked[i][0], (unsigned long)asked[i][1]);\n'
-        '        printf("%s\\n", e != NULL ? e->name : "-");\n'
+        '        printf("%s\\n", e != NULL ? texts + e->name : "-");\n'
         "    }\n"
     )
     assert_same(result(tmp_path, c, [f"{device.id}_tables.h"], body), dict(expected))
@@ -185,7 +186,7 @@ def test_codes_by_name_through_all_slots(model: Model, c: Path, tmp_path: Path) 
             continue
         body = (
             f"    for (size_t i = 0u; i < {screaming(device.id)}_CODE_COUNT; i++) {{\n"
-            f"        const char *const name = {device.id}_codes[i].name;\n"
+            f"        const char *const name = {device.id}_code_text({device.id}_codes[i].name);\n"
             "        const drivespec_code *code = NULL;\n"
             '        printf("%u=", (unsigned)i);\n'
             f"        while ((code = {device.id}_find_code_by_name(name, code)) != NULL) {{\n"
@@ -318,9 +319,10 @@ def switch_program(device: Device) -> tuple[str, Values]:
 
 
 def literal(pattern: Pattern) -> str:
-    colour = f'"{pattern.colour}"' if pattern.colour else "NULL"
     period, pause = (int(1000 * (seconds or 0)) for seconds in (pattern.period, pattern.pause))
-    return f"{{ {colour}, {period}u, {pause}u, {LIGHTS.index(pattern.light)}u, {pattern.flashes or 0}u }}"
+    return (
+        f'{{ "{pattern.colour or ""}", {period}u, {pause}u, {LIGHTS.index(pattern.light)}u, {pattern.flashes or 0}u }}'
+    )
 
 
 def led_program(device: Device) -> tuple[str, Values]:

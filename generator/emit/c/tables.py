@@ -7,7 +7,7 @@ from itertools import groupby
 from generator.emit.c.common import ERROR_KINDS, NO_RESPONSE, drive_prefix
 from generator.emit.c.device import DefaultRun, access_flags, code_defaults, device_prefix, error_mask
 from generator.emit.c.prose import provenance
-from generator.emit.c.syntax import comment, integer, string
+from generator.emit.c.syntax import comment, integer, string, text_size
 from generator.emit.c.writer import Names, access, wire_limits
 from generator.emit.hashing import perfect_hash
 from generator.model import Code, Device, ErrorEntry, Model, NodeRelative, Slot
@@ -15,8 +15,12 @@ from generator.naming import snake
 
 _NAMES = (
     "codes",
+    "code_text",
+    "code_texts",
     "defaults",
     "errors",
+    "error_text",
+    "error_texts",
     "baud_rates",
     "find_code",
     "find_code_by_index",
@@ -29,6 +33,35 @@ _NAMES = (
 
 _BYTE = 256
 """Records that a byte tells apart."""
+
+
+@dataclass(frozen=True, slots=True)
+class Text:
+    """A text with the end that C gives it."""
+
+    size: str
+    literal: str
+
+
+class Texts:
+    """Texts one behind the other; the first is empty, so that no text begins at 0."""
+
+    def __init__(self, name: str) -> None:
+        self.name = name
+        self._places = {"": 0}
+        self._end = 1
+
+    def place(self, text: str) -> str:
+        """Where a text begins; the same text is there once."""
+        if text not in self._places:
+            self._places[text] = self._end
+            self._end += text_size(text)
+        return integer(self._places[text], 16)
+
+    @property
+    def texts(self) -> tuple[Text, ...]:
+        """The texts in their order."""
+        return tuple(Text(integer(text_size(text), 16), string(text)) for text in self._places)
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,8 +106,10 @@ class Tables:
     stem: str
     prefix: str
     masked: bool
+    code_texts: Texts
     codes: tuple[str, ...]
     defaults: tuple[str, ...]
+    error_texts: Texts
     errors: tuple[str, ...]
     error_hashes: tuple[ErrorHash, ...]
     index_base: str
@@ -88,6 +123,7 @@ def device_tables(model: Model, device: Device, names: Names) -> Tables:
     for name in _NAMES:
         names.claim(f"{stem}_{name}", device.where)
     errors = sorted_errors(device)
+    code_texts, error_texts = Texts(f"{stem}_code_texts"), Texts(f"{stem}_error_texts")
     return Tables(
         file=f"{device.id}_tables.h",
         guard=names.claim(f"DRIVESPEC_{prefix}_TABLES_H", device.where),
@@ -97,9 +133,13 @@ def device_tables(model: Model, device: Device, names: Names) -> Tables:
         stem=stem,
         prefix=prefix,
         masked=bool(error_mask(device)),
-        codes=tuple(_code(code) for code in device.codes),
-        defaults=tuple(_run(code, run) for code in device.codes for run in code_defaults(code) if not run.shared),
-        errors=tuple(_error(error, device) for error in errors),
+        code_texts=code_texts,
+        codes=tuple(_code(code, code_texts) for code in device.codes),
+        defaults=tuple(
+            _run(code, run, code_texts) for code in device.codes for run in code_defaults(code) if not run.shared
+        ),
+        error_texts=error_texts,
+        errors=tuple(_error(error, device, error_texts) for error in errors),
         error_hashes=tuple(_hashes(errors, device, names)),
         index_base=f"{drive_prefix(device.drive)}_INDEX_BASE" if device.drive else "",
         slots=tuple(_slot(slot, device, names) for slot in device.slots),
@@ -151,7 +191,7 @@ def response_value(error: ErrorEntry, device: Device) -> int:
     return NO_RESPONSE
 
 
-def _code(code: Code) -> str:
+def _code(code: Code, texts: Texts) -> str:
     shared = [run for run in code_defaults(code) if run.shared]
     default = shared[0] if shared else None
     low, high = wire_limits(code.range, code.scaling or 1) if code.range else (0, 0)
@@ -159,8 +199,8 @@ def _code(code: Code) -> str:
         (
             integer(low, 64, signed=True),
             integer(high, 64, signed=True),
-            *_default(default),
-            string(code.name),
+            *_default(default, texts),
+            texts.place(code.name),
             integer(code.scaling or 0, 32),
             integer(code.number, 16),
             integer(code.index, 16, hexadecimal=True),
@@ -173,10 +213,10 @@ def _code(code: Code) -> str:
     )
 
 
-def _run(code: Code, run: DefaultRun) -> str:
+def _run(code: Code, run: DefaultRun, texts: Texts) -> str:
     return ", ".join(
         (
-            *_default(run),
+            *_default(run, texts),
             integer(code.number, 16),
             _has(False, run),
             integer(run.first, 8),
@@ -185,13 +225,13 @@ def _run(code: Code, run: DefaultRun) -> str:
     )
 
 
-def _default(run: DefaultRun | None) -> tuple[str, str, str]:
+def _default(run: DefaultRun | None, texts: Texts) -> tuple[str, str, str]:
     """Members ``default_value``, ``default_text`` and ``default_base``."""
     value = run.value if run else None
     base = _base(run)
     return (
         integer(value if isinstance(value, int) else 0, 64, signed=True),
-        string(value) if isinstance(value, str) else "NULL",
+        texts.place(value) if isinstance(value, str) else "0u",
         integer(base.base if base else 0, 32, hexadecimal=True),
     )
 
@@ -212,10 +252,10 @@ def _has(has_range: bool, run: DefaultRun | None) -> str:
     return " | ".join(flags) or "0u"
 
 
-def _error(error: ErrorEntry, device: Device) -> str:
+def _error(error: ErrorEntry, device: Device, texts: Texts) -> str:
     return ", ".join(
         (
-            string(error.name),
+            texts.place(error.name),
             integer(error.number, 32, hexadecimal=True),
             integer(error.last, 32, hexadecimal=True),
             f"DRIVESPEC_ERROR_{error.kind.upper()}",
