@@ -3,10 +3,12 @@
 import argparse
 from pathlib import Path
 
+from bench.codecs import codecs
 from bench.lookups import lookups
+from bench.python import python
 from generator.pipeline import compile_model
 
-PARTS = {"lookups": lookups}
+PARTS = {"lookups": lookups, "python": python, "codecs": codecs}
 
 
 def main() -> int:

@@ -77,23 +77,20 @@ def _rust(model: Model, listed: list[Case], rounds: int) -> bool:
     programs.write(crate, programs.texts(render_rust(model)))
     lock = (programs.HERE / "Cargo.lock").read_text(encoding="utf-8")
     programs.write(folder, [*_rust_files(listed, True), ("Cargo.lock", lock)])
-    if programs.cargo(folder, "fetch").returncode != 0:
+    if not programs.fetched(folder):
         print(f"phf is left out: {programs.CRATES_OFF}\n")
         (folder / "Cargo.lock").unlink()
         programs.write(folder, _rust_files(listed, False))
-    built = programs.cargo(folder, "build", "--release", "--offline")
-    if built.returncode != 0:
-        raise SystemExit(f"make bench-libs: cargo failed:\n{built.stderr}")
+    program = programs.build_rust(folder)
     good = True
     for case in listed:
-        program = folder / "target" / "release" / "lookups"
         figures = medians(programs.run(program, case.name, programs.FOLDER / case.name, str(rounds)))
         good &= compare(f"Rust, {case.title}", figures, _MEASUREMENTS)
     return good
 
 
 def _rust_files(listed: list[Case], phf: bool) -> list[tuple[str, str]]:
-    files = [("Cargo.toml", programs.fill("Cargo.toml", phf=phf))]
+    files = [("Cargo.toml", programs.fill("Cargo.toml", name="lookups", phf=phf))]
     entries = []
     for case in listed:
         index = direct(case.numbers, len(case.runs))

@@ -2,6 +2,7 @@
 
 import shutil
 import subprocess
+import tomllib
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 
@@ -62,10 +63,17 @@ def compile_c(source: Path, include: Path) -> Path:
     return program
 
 
-def cargo(folder: Path, *arguments: str) -> subprocess.CompletedProcess[str]:
-    """Cargo on the crate of the benchmark."""
-    command = ["cargo", *arguments, "--manifest-path", str(folder / "Cargo.toml")]
-    return subprocess.run(command, capture_output=True, text=True, check=False)
+def fetched(folder: Path) -> bool:
+    """Whether cargo has, or gets, what a crate needs."""
+    command = ["cargo", "fetch", "--manifest-path", str(folder / "Cargo.toml")]
+    return subprocess.run(command, capture_output=True, check=False).returncode == 0
+
+
+def build_rust(folder: Path) -> Path:
+    """Program of a crate."""
+    run("cargo", "build", "--release", "--offline", "--quiet", "--manifest-path", folder / "Cargo.toml")
+    manifest = tomllib.loads((folder / "Cargo.toml").read_text(encoding="utf-8"))
+    return folder / "target" / "release" / str(manifest["package"]["name"])
 
 
 def missing(tools: Sequence[str]) -> list[str]:
