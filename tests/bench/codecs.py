@@ -8,6 +8,7 @@ from importlib import import_module
 from statistics import median
 
 from bench import programs
+from bench.python import place
 from bench.tables import medians, show
 from generator.codec import CodecError, encode
 from generator.emit.c import render as render_c
@@ -45,6 +46,7 @@ class Task:
 def codecs(model: Model, rounds: int) -> bool:
     """Print the table; there is no goal for these."""
     tasks = [task for device in model.devices for layout in device.layouts if (task := _task(device, layout))]
+    sys.path.insert(0, str(place(model)))
     c, rust = _c(model, tasks, rounds), _rust(model, tasks, rounds)
     rows = []
     for task in tasks:
@@ -105,9 +107,6 @@ def _rust(model: Model, tasks: Sequence[Task], rounds: int) -> dict[str, dict[st
 
 
 def _python(task: Task, rounds: int) -> list[float]:
-    package = str(programs.HERE.parent.parent / "generated" / "python")
-    if package not in sys.path:
-        sys.path.insert(0, package)
     layout = getattr(import_module(f"drivespec_devices.{task.device}"), task.python)
     decoded = [layout.decode(telegram) for telegram in task.telegrams]
     decodes: Callable[[], object] = lambda: [layout.decode(telegram) for telegram in task.telegrams]  # noqa: E731

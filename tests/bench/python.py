@@ -10,7 +10,9 @@ from importlib import import_module
 from pathlib import Path
 from types import ModuleType
 
+from bench import programs
 from bench.tables import show
+from generator.emit.python import render
 from generator.model import Device, Model
 
 GOAL = 3.0
@@ -18,7 +20,6 @@ GOAL = 3.0
 _INTERPRETERS = 3
 """Fresh interpreters of a module for each round."""
 _LOOKUPS = 20_000
-_PACKAGE = Path(__file__).resolve().parent.parent.parent / "generated" / "python"
 Key = tuple[int] | tuple[int, str]
 """What a lookup is called with."""
 _IMPORT = (
@@ -29,17 +30,25 @@ _IMPORT = (
 
 def python(model: Model, rounds: int) -> bool:
     """Print the tables; whether each import is within the goal."""
-    good = _imports(model, rounds)
-    _lookups(model, rounds)
+    package = place(model)
+    good = _imports(model, package, rounds)
+    _lookups(model, package, rounds)
     return good
 
 
-def _imports(model: Model, rounds: int) -> bool:
-    folder = _PACKAGE.parent.parent / ".build" / "bench" / "empty"
+def place(model: Model) -> Path:
+    """Folder of a fresh package, outside of what is generated, where Python may keep its bytecode."""
+    folder = programs.FOLDER / "python"
+    programs.write(folder, programs.texts(render(model)))
+    return folder
+
+
+def _imports(model: Model, package: Path, rounds: int) -> bool:
+    folder = programs.FOLDER / "empty"
     folder.mkdir(parents=True, exist_ok=True)
     (folder / "empty_module.py").write_text("", encoding="utf-8")
-    modules = {"empty_module": folder, "drivespec_devices": _PACKAGE}
-    modules |= {f"drivespec_devices.{device.id}": _PACKAGE for device in model.devices}
+    modules = {"empty_module": folder, "drivespec_devices": package}
+    modules |= {f"drivespec_devices.{device.id}": package for device in model.devices}
     times: dict[str, list[float]] = {name: [] for name in modules}
     for _ in range(rounds * _INTERPRETERS):
         for name, path in modules.items():
@@ -55,8 +64,8 @@ def _imports(model: Model, rounds: int) -> bool:
     return all(value - empty <= GOAL for value in medians.values())
 
 
-def _lookups(model: Model, rounds: int) -> None:
-    sys.path.insert(0, str(_PACKAGE))
+def _lookups(model: Model, package: Path, rounds: int) -> None:
+    sys.path.insert(0, str(package))
     rows = []
     for device in model.devices:
         module = import_module(f"drivespec_devices.{device.id}")
