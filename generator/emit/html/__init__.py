@@ -9,19 +9,26 @@ is the name of a file.
 from generator.emit.base import Output
 from generator.emit.environment import TEMPLATES
 from generator.emit.environment import render as fill
+from generator.emit.html.downloads import FOLDER, NO_FILES, Offered, Stored
 from generator.emit.html.lamps import animations
 from generator.emit.html.pages import pages
 from generator.model import Model
 
+__all__ = ["FOLDER", "NO_FILES", "Offered", "Stored", "render"]
 
-def render(model: Model) -> dict[str, Output]:
+
+def render(model: Model, offered: Offered = NO_FILES) -> dict[str, Output]:
     """Every page, the style sheet and the scripts, by path below the folder of the site.
+
+    Args:
+        model: The facts.
+        offered: Files that the pages offer, by path below the folder ``files`` beside them.
 
     Raises:
         EmitError: A file that the pages describe cannot be written.
     """
     outputs = {"style.css": fill("html/style.css.j2", animations=animations(model))}
-    for page in pages(model):
+    for page in pages(model, offered):
         outputs[page.frame.path] = fill(f"html/{page.template}.html.j2", frame=page.frame, page=page.view)
     for script in sorted((TEMPLATES / "html").glob("*.js")):
         outputs[script.name] = script.read_text(encoding="utf-8")

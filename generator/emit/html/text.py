@@ -16,6 +16,12 @@ ELLIPSIS = "\N{HORIZONTAL ELLIPSIS}"
 COVERAGE = "coverage.html"
 """Page of the sources."""
 
+DOWNLOADS = "downloads.html"
+"""Page of all files to take away."""
+
+ERRATA = "errata.html"
+"""Page of the errata of all manuals."""
+
 _NO_BREAK = "\N{NO-BREAK SPACE}"
 
 _ORIGINS = {
