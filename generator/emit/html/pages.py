@@ -15,8 +15,11 @@ from generator.emit.html.downloads import (
     packages,
 )
 from generator.emit.html.drive import DriveSection, drive_section
+from generator.emit.html.errata import all_errata
 from generator.emit.html.errors import error_entry, error_group
 from generator.emit.html.files import FileSection, file_sections
+from generator.emit.html.filters import SCRIPT as FILTER
+from generator.emit.html.filters import Filter, filter_of
 from generator.emit.html.frame import Frame, NavItem, coverage_item, device_frame, site_frame
 from generator.emit.html.home import home
 from generator.emit.html.ledger import ledger_groups
@@ -27,7 +30,7 @@ from generator.emit.html.panel import led_group, switch_group
 from generator.emit.html.places import code_entries, code_id, error_entries, error_id, errors_group, object_id, page_of
 from generator.emit.html.tables import formula_group, table_groups
 from generator.emit.html.telegrams import example_group, layout_group
-from generator.emit.html.text import COVERAGE, DOWNLOADS, NONE, Piece, plain
+from generator.emit.html.text import COVERAGE, DOWNLOADS, ERRATA, NONE, Piece, plain
 from generator.model import Code, Device, DictionaryObject, ErrorEntry, Model
 
 _OBJECT_KINDS = {"canopen": "CANopen object dictionary", "profidrive": "PROFIdrive parameters"}
@@ -51,8 +54,8 @@ _LEADS = {
     "telegrams": "Offsets count bytes from 0; bit 0 is the least significant.",
     "errata": "What is printed wrong, what is used instead, why, and how sure that is.",
 }
-_WITH_PAGES = ("codes", "objects", "errors")
-"""Parts whose entries have a page of their own each."""
+_FILTERED = {"codes": ("Data type", "Access"), "objects": ("Type",), "errors": ("Response",)}
+"""Parts whose entries have a page of their own each, with the columns by which their overviews are filtered."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,6 +74,7 @@ class PartView:
     lead: str
     groups: tuple[Group, ...]
     blinks: bool
+    filter: Filter | None
 
 
 @dataclass(frozen=True, slots=True)
@@ -107,6 +111,7 @@ def pages(model: Model, offered: Offered) -> Iterator[Page]:
     devices = [Links(device) for device in model.devices]
     yield _index(model, devices)
     yield _coverage(model)
+    yield _errata(model, devices)
     yield _downloads(model, offered)
     for links in devices:
         yield from _device_pages(model, links, offered)
@@ -117,6 +122,12 @@ def _index(model: Model, devices: Sequence[Links]) -> Page:
     names = ", ".join(device.title for device in model.devices)
     frame = site_frame(model, "index.html", title, f"Codes, objects, errors, LEDs, switches and telegrams of {names}.")
     return Page(frame, "index", home(model, [links.on(frame.path) for links in devices]))
+
+
+def _errata(model: Model, devices: Sequence[Links]) -> Page:
+    description = "What the manuals print wrong, what is used instead and how sure that is, by manual and by kind."
+    frame = site_frame(model, ERRATA, "Errata of all manuals", description, scripts=(FILTER,))
+    return Page(frame, "errata", all_errata([links.on(frame.path) for links in devices]))
 
 
 def _downloads(model: Model, offered: Offered) -> Page:
@@ -161,11 +172,18 @@ def _device_pages(model: Model, links: Links, offered: Offered) -> Iterator[Page
     for part, groups in parts.items():
         title = _TITLES[part]
         names = ", ".join(dict.fromkeys(group.title for group in groups))
+        found = filter_of(groups, _FILTERED[part]) if part in _FILTERED else None
         frame = device_frame(
-            model, device, nav, part=part, title=title, description=f"{title} of the {device.title}: {names}."
+            model,
+            device,
+            nav,
+            part=part,
+            title=title,
+            description=f"{title} of the {device.title}: {names}.",
+            scripts=(FILTER,) if found else (),
         )
-        yield Page(frame, "part", PartView(_LEADS.get(part, ""), groups, blinks=part == "leds"))
-        if part in _WITH_PAGES:
+        yield Page(frame, "part", PartView(_LEADS.get(part, ""), groups, blinks=part == "leds", filter=found))
+        if part in _FILTERED:
             yield from _entry_pages(model, links, nav, part)
     if device.drive:
         frame = device_frame(
