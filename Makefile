@@ -9,7 +9,7 @@ RUN := $(VENV)/bin/python
 SOURCES := $(shell find spec generator templates -type f -not -path '*/__pycache__/*' -not -name '.*')
 PIP := $(RUN) -m pip install --quiet --disable-pip-version-check
 
-.PHONY: all site serve check test lint fuzz census clean help
+.PHONY: always all site serve check test lint fuzz census clean help
 all: .build/generated .build/site
 
 .build/generated: $(SOURCES) $(VENV)/ready
@@ -17,12 +17,16 @@ all: .build/generated .build/site
 	$(RUN) -m generator build
 	@touch $@
 
-site: .build/site ## build the reference in generated/html, for any static host or none
+site: .build/site ## build the reference in generated/html; URL=https://host/path/ adds a sitemap
 
-.build/site: $(SOURCES) $(VENV)/ready
+.build/site: $(SOURCES) $(VENV)/ready .build/url
 	@mkdir -p .build
-	$(RUN) -m generator site
+	$(RUN) -m generator site --url '$(URL)'
 	@touch $@
+
+.build/url: always
+	@mkdir -p .build
+	@echo '$(URL)' | cmp -s - $@ || echo '$(URL)' > $@
 
 serve: .build/site ## show the reference at http://localhost:8000
 	$(RUN) -m http.server --directory generated/html --bind 127.0.0.1 8000

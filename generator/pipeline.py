@@ -46,8 +46,10 @@ def render(model: Model) -> dict[str, bytes]:
     return files
 
 
-def render_site(model: Model) -> dict[str, bytes]:
+def render_site(model: Model, url: str = "") -> dict[str, bytes]:
     """The reference as a folder to be published: its pages, and below files/ what they offer.
+
+    With ``url``, the address that the folder will have (ended by "/"), pages name theirs and there is a sitemap.
 
     Raises:
         DiagnosticsError: A target or the reference cannot express a fact.
@@ -55,7 +57,7 @@ def render_site(model: Model) -> dict[str, bytes]:
     files = offer(model.version, render(model))
     offered = {path: html.Stored(len(data), digest(data)) for path, data in files.items()}
     with reported():
-        pages = {path: output.data() for path, output in html.render(model, offered).items()}
+        pages = {path: output.data() for path, output in html.render(model, offered, url).items()}
     return {**pages, **{f"{html.FOLDER}/{path}": data for path, data in {**files, SUMS: sums(files)}.items()}}
 
 

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 from generator.emit.html.blocks import Fact, Table
 from generator.emit.html.coverage import edition, listed_sources
 from generator.emit.html.links import Links
-from generator.emit.html.places import page_of
-from generator.emit.html.text import Prose, manual_link
+from generator.emit.html.places import code_id, error_id, object_id, page_of
+from generator.emit.html.text import Piece, Prose, manual_link
 from generator.emit.html.ways import Figure, Way, figures, to_address, to_errors, to_leds, to_parameters
 from generator.model import Model
 
@@ -48,6 +48,35 @@ class HomeView:
     errata: str
     sources_count: str
     sources: Table
+
+
+@dataclass(frozen=True, slots=True)
+class NotFoundView:
+    """What helps a reader whose address leads nowhere; ``examples`` are addresses of entries."""
+
+    examples: tuple[Piece, ...]
+    cards: tuple[Card, ...]
+    questions: tuple[Question, ...]
+
+
+def not_found(devices: Sequence[Links]) -> NotFoundView:
+    """View of the page of addresses that lead nowhere."""
+    return NotFoundView(
+        examples=tuple(dict.fromkeys(_examples(devices))),
+        cards=tuple(map(_card, devices)),
+        questions=tuple(question for question in _questions(devices) if question.answers),
+    )
+
+
+def _examples(devices: Sequence[Links]) -> Iterator[Piece]:
+    """The page of a code, of an object and of an error."""
+    codes = (page_of(one.device, code_id(code.number)) for one in devices for code in one.device.codes)
+    objects = (page_of(one.device, object_id(entry)) for one in devices for entry in one.device.objects)
+    errors = (page_of(one.device, error_id(e.kind, e.number)) for one in devices for e in one.device.errors)
+    for pages in (codes, objects, errors):
+        page = next(pages, "")
+        if page:
+            yield Piece(page, page)
 
 
 def home(model: Model, devices: Sequence[Links]) -> HomeView:

@@ -21,7 +21,7 @@ from generator.emit.html.files import FileSection, file_sections
 from generator.emit.html.filters import SCRIPT as FILTER
 from generator.emit.html.filters import Filter, filter_of
 from generator.emit.html.frame import Frame, NavItem, coverage_item, device_frame, site_frame
-from generator.emit.html.home import home
+from generator.emit.html.home import home, not_found
 from generator.emit.html.ledger import ledger_groups
 from generator.emit.html.links import Links
 from generator.emit.html.objects import object_entry, object_group
@@ -30,7 +30,7 @@ from generator.emit.html.panel import led_group, switch_group
 from generator.emit.html.places import code_entries, code_id, error_entries, error_id, errors_group, object_id, page_of
 from generator.emit.html.tables import formula_group, table_groups
 from generator.emit.html.telegrams import example_group, layout_group
-from generator.emit.html.text import COVERAGE, DOWNLOADS, ERRATA, NONE, Piece, plain
+from generator.emit.html.text import COVERAGE, DOWNLOADS, ERRATA, INDEX, NONE, NOT_FOUND, Piece, plain
 from generator.model import Code, Device, DictionaryObject, ErrorEntry, Model
 
 _OBJECT_KINDS = {"canopen": "CANopen object dictionary", "profidrive": "PROFIdrive parameters"}
@@ -113,6 +113,7 @@ def pages(model: Model, offered: Offered) -> Iterator[Page]:
     yield _coverage(model)
     yield _errata(model, devices)
     yield _downloads(model, offered)
+    yield _not_found(model, devices)
     for links in devices:
         yield from _device_pages(model, links, offered)
 
@@ -120,7 +121,7 @@ def pages(model: Model, offered: Offered) -> Iterator[Page]:
 def _index(model: Model, devices: Sequence[Links]) -> Page:
     title = "Drive communication modules, transcribed"
     names = ", ".join(device.title for device in model.devices)
-    frame = site_frame(model, "index.html", title, f"Codes, objects, errors, LEDs, switches and telegrams of {names}.")
+    frame = site_frame(model, INDEX, title, f"Codes, objects, errors, LEDs, switches and telegrams of {names}.")
     return Page(frame, "index", home(model, [links.on(frame.path) for links in devices]))
 
 
@@ -134,6 +135,13 @@ def _downloads(model: Model, offered: Offered) -> Page:
     description = "EDS, XDD, GSD and JSON files, C, Python and Rust libraries, with sizes and SHA-256 digests."
     frame = site_frame(model, DOWNLOADS, "Downloads", description)
     return Page(frame, "downloads", FilesView(all_downloads(model, offered), ()))
+
+
+def _not_found(model: Model, devices: Sequence[Links]) -> Page:
+    frame = site_frame(
+        model, NOT_FOUND, "There is no such page", "The address leads nowhere; ways to what you look for."
+    )
+    return Page(frame, "404", not_found([links.on(frame.path) for links in devices]))
 
 
 def _coverage(model: Model) -> Page:
@@ -212,7 +220,7 @@ def _entry_pages(model: Model, links: Links, nav: Sequence[NavItem], part: str) 
             part=part,
             entry=entry.anchors[0].id,
             title=piece.text,
-            description=_described(entry, piece.text),
+            description=_described(entry, f"{device.order_code} {piece.text}"),
             neighbours=neighbours,
         )
         yield Page(frame, "entry", EntryView(entry))

@@ -13,6 +13,9 @@ NONE = "\N{EN DASH}"
 ELLIPSIS = "\N{HORIZONTAL ELLIPSIS}"
 """Stands between the ends of a run or range."""
 
+INDEX = "index.html"
+"""First page."""
+
 COVERAGE = "coverage.html"
 """Page of the sources."""
 
@@ -21,6 +24,9 @@ DOWNLOADS = "downloads.html"
 
 ERRATA = "errata.html"
 """Page of the errata of all manuals."""
+
+NOT_FOUND = "404.html"
+"""Page that a host shows for addresses that lead nowhere."""
 
 _NO_BREAK = "\N{NO-BREAK SPACE}"
 
