@@ -8,8 +8,10 @@ VENV := .venv
 RUN := $(VENV)/bin/python
 SOURCES := $(shell find spec generator templates -type f -not -path '*/__pycache__/*' -not -name '.*')
 PIP := $(RUN) -m pip install --quiet --disable-pip-version-check
+BROWSER = { [ "$$(id -u)" = 0 ] && command -v apt-get >/dev/null && echo "make test: installing chromium" && apt-get update -qq && \
+	DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends chromium fonts-dejavu-core >/dev/null; }
 
-.PHONY: always all site serve check test lint fuzz census clean help
+.PHONY: always all site serve check test lint bench-libs fuzz census clean help
 all: .build/generated .build/site
 
 .build/generated: $(SOURCES) $(VENV)/ready
@@ -53,6 +55,7 @@ test: .build/generated .build/site $(VENV)/ready-for-tests lint ## run the whole
 	@command -v c++ >/dev/null || { echo "make test: install a C++ compiler (c++ is not on the PATH)" >&2; exit 1; }
 	@command -v cmake >/dev/null || { echo "make test: install CMake (cmake is not on the PATH)" >&2; exit 1; }
 	@command -v pkg-config >/dev/null || { echo "make test: install pkg-config (it is not on the PATH)" >&2; exit 1; }
+	@command -v chromium >/dev/null || $(BROWSER) || echo "make test: the tests in a browser are left out, install chromium for them" >&2
 	@command -v cargo >/dev/null || { echo "make test: install Rust (cargo is not on the PATH)" >&2; exit 1; }
 	$(RUN) -m pytest
 
@@ -70,9 +73,13 @@ fuzz: .build/generated ## fuzz the C codecs, ten seconds each device (clang with
 	    "$$target" -max_total_time=10 -max_len=300 || exit 1; \
 	done
 
+bench-libs: .build/generated $(VENV)/ready ## what the libraries cost beside the usual other ways (cc, cargo; gperf and phf if there)
+	@for tool in cc cargo; do command -v $$tool >/dev/null || { echo "make bench-libs: $$tool is not on the PATH" >&2; exit 1; }; done
+	@PYTHONPATH=tests $(RUN) -m bench
+
 clean: ## remove the virtual environment and what builds and tests leave behind
 	rm -rf $(VENV) .build .pytest_cache .mypy_cache .ruff_cache .hypothesis generated/.state.json generated/html
 
 help: ## show this list
 	@echo "make            regenerate what is out of date in generated/"
-	@sed -n 's/^\([a-z]*\):.*## \(.*\)/make \1|\2/p' Makefile | while IFS='|' read -r a b; do printf '%-15s %s\n' "$$a" "$$b"; done
+	@sed -n 's/^\([a-z-]*\):.*## \(.*\)/make \1|\2/p' Makefile | while IFS='|' read -r a b; do printf '%-15s %s\n' "$$a" "$$b"; done

@@ -23,7 +23,7 @@ Examples:
   python -m generator check --format json       the same for an editor or CI
   python -m generator census > facts.txt        all facts, one a line; compare two with diff
   python -m generator explain code-index        what a rule demands
-  python -m generator dcf --device e94aycca --slot MXI1 --product 9400_StateLine --node 5 --set C13381=100
+  python -m generator dcf --device e94aycca --slot MXI1 --product 9400_StateLine --node 5 --baud 250
                                                 the DCF and the EDS of one device on a bus
 
 Exit status: 0 done, 1 problems in spec (nothing is written), 2 wrong usage.
@@ -92,7 +92,7 @@ def _parser() -> argparse.ArgumentParser:
         "--product", help="base drive as in the names of the EDS files; may be left out where there is one"
     )
     dcf.add_argument("--node", required=True, metavar="ID", help="node-ID, 1 ... 127")
-    dcf.add_argument("--baud", default="500", metavar="RATE", help="bit rate in kbit/s (default: 500)")
+    dcf.add_argument("--baud", required=True, metavar="RATE", help="bit rate in kbit/s")
     dcf.add_argument(
         "--set",
         action="append",

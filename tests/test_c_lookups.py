@@ -1,16 +1,17 @@
 """Arithmetic and lookups of the C headers: run over whole domains and compared with the model."""
 
 import random
+from dataclasses import replace
 from fractions import Fraction
 from math import floor
 from pathlib import Path
 
 import pytest
-from test_c import COMPILERS, Values, assert_same, compile_c, run
+from test_c import COMPILERS, Values, assert_same, compile_c, run, write
 
 from generator.emit.c.common import ERROR_KINDS
-from generator.emit.c.hashing import mixed_kind, perfect_hash
 from generator.emit.c.panel import LIGHTS
+from generator.emit.hashing import perfect_hash
 from generator.model import Code, Device, Light, Model, Pattern, SwitchGroup
 from generator.naming import screaming, snake
 
@@ -33,31 +34,87 @@ def result(folder: Path, c: Path, headers: list[str], body: str, compiler: str =
 # Errors.
 
 
-def hits(keys: list[int], probes: list[int]) -> set[int]:
-    found = perfect_hash(keys)
-    return {probe for probe in probes if keys[found.find(probe)] == probe}
+def hits(runs: list[tuple[int, int]], probes: list[int]) -> dict[int, int]:
+    """Place of each probe that a run holds, by the hash."""
+    found = perfect_hash(runs)
+    holds = {probe: found.find(probe) for probe in probes}
+    for place in found.long:
+        holds |= {probe: place for probe in probes if runs[place][0] <= probe <= runs[place][1]}
+    return {probe: place for probe, place in holds.items() if runs[place][0] <= probe <= runs[place][1]}
 
 
-def test_perfect_hashes_find_each_key_and_no_other() -> None:
+def test_perfect_hashes_find_each_number_and_no_other() -> None:
     rng = random.Random(1)
     for size in (1, 2, 3, 17, 300):
-        sparse = rng.sample(range(2**32), size)
-        clustered = [number // 25 << 16 | number % 25 for number in range(size)]
-        for keys in (sparse, clustered):
-            strangers = rng.sample(range(2**32), 1000)
-            assert hits(keys, keys + strangers) == set(keys) | (set(strangers) & set(keys))
+        sparse = [(number, number) for number in rng.sample(range(2**32), size)]
+        clustered = [(key, key) for key in (number // 25 << 16 | number % 25 for number in range(size))]
+        runs = [(number << 20, (number << 20) + rng.choice((0, 31, 255, 256, 2**19))) for number in range(size)]
+        dense = [(3 * number + 7, 3 * number + 9) for number in range(size)]
+        for keys in (sparse, clustered, runs, dense):
+            probes = [*(end for run in keys for end in run), *rng.sample(range(2**32), 1000)]
+            expected = {p: at for p in probes for at, (first, last) in enumerate(keys) if first <= p <= last}
+            assert hits(keys, probes) == expected
 
 
-@pytest.mark.parametrize("keys", [[], [1, 2, 1]])
-def test_perfect_hashes_take_distinct_keys(keys: list[int]) -> None:
-    with pytest.raises(ValueError, match="distinct"):
-        perfect_hash(keys)
+def test_numbers_without_gaps_are_their_index() -> None:
+    found = perfect_hash([(7, 9), (10, 10), (11, 12)])
+    assert (found.first, found.places) == (7, (0, 0, 0, 1, 2, 2))
 
 
-def test_kinds_of_errors_do_not_share_keys(model: Model) -> None:
-    for device in model.devices:
-        keys = [mixed_kind(ERROR_KINDS.index(e.kind), e.number) for e in device.errors]
-        assert len(set(keys)) == len(keys)
+def test_perfect_hashes_of_numbers_without_a_pattern_have_seeds() -> None:
+    """The tables that are searched otherwise would grow with the square of the numbers."""
+    keys = [(number, number) for number in random.Random(1).sample(range(2**32), 500)]
+    found = perfect_hash(keys)
+    assert found.seeds
+    assert max(found.seeds) < 256
+    assert len(found.seeds) + len(found.places) <= 4 * len(keys)
+
+
+@pytest.mark.parametrize("runs", [[], [(1, 1), (2, 2), (1, 1)], [(1, 5), (5, 6)], [(2, 1)]])
+def test_perfect_hashes_take_distinct_runs(runs: list[tuple[int, int]]) -> None:
+    with pytest.raises(ValueError, match=r"distinct|ascending"):
+        perfect_hash(runs)
+
+
+def sparse_errors(device: Device) -> Device:
+    """The device with errors whose numbers have no pattern, of two kinds, and with runs that no table holds."""
+    rng = random.Random(2)
+    like = next(error for error in device.errors if error.kind == "device")
+    numbers = sorted(rng.sample(range(2**26), 400))
+    singles = [
+        replace(like, number=number, last=number, kind=kind, name=f"{kind} {number}")
+        for kind in ("device", "gci")
+        for number in numbers
+    ]
+    runs = [
+        replace(like, number=first << 26, last=(first << 26) + 2**20, kind="gci", name=f"Run {first}")
+        for first in (1, 2, 63)
+    ]
+    return replace(device, errors=(*singles, *runs))
+
+
+def test_lookup_of_numbers_without_a_pattern_and_of_long_runs(model: Model, tmp_path: Path) -> None:
+    device = sparse_errors(next(d for d in model.devices if any(e.kind == "device" for e in d.errors)))
+    c = write(tmp_path / "c", replace(model, devices=(device,)))
+    kinds = {kind: at for at, kind in enumerate(ERROR_KINDS)}
+    rows, expected = [], {}
+    for error in device.errors:
+        for number in (error.number - 1, error.number, error.last, error.last + 1):
+            key = f"{kinds[error.kind]} {number % 2**32}"
+            if key not in expected:
+                others = [e.name for e in device.errors if e.kind == error.kind and e.number <= number <= e.last]
+                expected[key] = others[0] if others else "-"
+                rows.append(f"{{ {kinds[error.kind]}u, UINT32_C({number % 2**32}) }}")
+    body = (
+        f"    const char *texts = (const char *)&{device.id}_error_texts;\n"
+        f"    static const uint32_t asked[][2] = {{ {', '.join(rows)} }};\n"
+        "    for (size_t i = 0u; i < sizeof asked / sizeof asked[0]; i++) {\n"
+        f"        const drivespec_error *e = {device.id}_find_error((uint8_t)asked[i][0], asked[i][1]);\n"
+        '        printf("%u %lu=", (unsigned)asked[i][0], (unsigned long)asked[i][1]);\n'
+        '        printf("%s\\n", e != NULL ? texts + e->name : "-");\n'
+        "    }\n"
+    )
+    assert_same(result(tmp_path, c, [f"{device.id}_tables.h"], body), dict(expected))
 
 
 def test_reported_errors_whatever_their_response_and_instance(model: Model, c: Path, tmp_path: Path) -> None:
@@ -129,7 +186,7 @@ def test_codes_by_name_through_all_slots(model: Model, c: Path, tmp_path: Path) 
             continue
         body = (
             f"    for (size_t i = 0u; i < {screaming(device.id)}_CODE_COUNT; i++) {{\n"
-            f"        const char *const name = {device.id}_codes[i].name;\n"
+            f"        const char *const name = {device.id}_code_text({device.id}_codes[i].name);\n"
             "        const drivespec_code *code = NULL;\n"
             '        printf("%u=", (unsigned)i);\n'
             f"        while ((code = {device.id}_find_code_by_name(name, code)) != NULL) {{\n"
@@ -262,9 +319,10 @@ def switch_program(device: Device) -> tuple[str, Values]:
 
 
 def literal(pattern: Pattern) -> str:
-    colour = f'"{pattern.colour}"' if pattern.colour else "NULL"
     period, pause = (int(1000 * (seconds or 0)) for seconds in (pattern.period, pattern.pause))
-    return f"{{ {colour}, {period}u, {pause}u, {LIGHTS.index(pattern.light)}u, {pattern.flashes or 0}u }}"
+    return (
+        f'{{ "{pattern.colour or ""}", {period}u, {pause}u, {LIGHTS.index(pattern.light)}u, {pattern.flashes or 0}u }}'
+    )
 
 
 def led_program(device: Device) -> tuple[str, Values]:

@@ -424,20 +424,42 @@ def test_command_writes_two_files(
     model: Model, monkeypatch: pytest.MonkeyPatch, root: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     out = tmp_path / "deep" / "folder"
-    arguments = ["--product", "9400_StateLine", "--node", "5", "--set", "I-1017=100", "--out", str(out)]
+    arguments = [
+        "--product",
+        "9400_StateLine",
+        "--node",
+        "5",
+        "--baud",
+        "250",
+        "--set",
+        "I-1017=100",
+        "--out",
+        str(out),
+    ]
     assert _run(model, monkeypatch, root, *arguments) == 0
     names = ["E94AYCCA_MXI1_9400_StateLine_node5.eds", "E94AYCCA_MXI1_9400_StateLine_node5.dcf"]
     assert sorted(path.name for path in out.iterdir()) == sorted(names)
     assert capsys.readouterr().out == "".join(f"{out / name}\n" for name in names)
     assert b"ParameterValue=100\r\n" in (out / names[1]).read_bytes()
-    assert b"Baudrate=500\r\n" in (out / names[1]).read_bytes()
+    assert b"Baudrate=250\r\n" in (out / names[1]).read_bytes()
 
 
 def test_command_writes_nothing_after_a_mistake(
     model: Model, monkeypatch: pytest.MonkeyPatch, root: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     out = tmp_path / "out"
-    arguments = ["--product", "9400_StateLine", "--node", "5", "--set", "I-1017=100000", "--out", str(out)]
+    arguments = [
+        "--product",
+        "9400_StateLine",
+        "--node",
+        "5",
+        "--baud",
+        "250",
+        "--set",
+        "I-1017=100000",
+        "--out",
+        str(out),
+    ]
     assert _run(model, monkeypatch, root, *arguments) == 2
     assert not out.exists()
     captured = capsys.readouterr()
@@ -452,7 +474,7 @@ def test_command_reports_a_folder_that_cannot_be_written(
     model: Model, monkeypatch: pytest.MonkeyPatch, root: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     (tmp_path / "file").write_text("kept")
-    arguments = ["--product", "9400_StateLine", "--node", "5", "--out", str(tmp_path / "file")]
+    arguments = ["--product", "9400_StateLine", "--node", "5", "--baud", "250", "--out", str(tmp_path / "file")]
     assert _run(model, monkeypatch, root, *arguments) == 1
     assert "nothing was written" in capsys.readouterr().err
     assert (tmp_path / "file").read_text() == "kept"
@@ -462,16 +484,16 @@ def test_command_reports_what_an_eds_cannot_hold(
     model: Model, monkeypatch: pytest.MonkeyPatch, root: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     devices = tuple(replace(device, manufacturer="温度") for device in model.devices)
-    arguments = ["--product", "9400_StateLine", "--node", "5", "--out", str(tmp_path)]
+    arguments = ["--product", "9400_StateLine", "--node", "5", "--baud", "250", "--out", str(tmp_path)]
     assert _run(replace(model, devices=devices), monkeypatch, root, *arguments) == 1
     assert "error[not-ascii]" in capsys.readouterr().err
     assert list(tmp_path.iterdir()) == []
 
 
-def test_command_needs_a_node(
+def test_command_needs_a_node_and_a_bit_rate(
     model: Model, monkeypatch: pytest.MonkeyPatch, root: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     with pytest.raises(SystemExit) as caught:
         _run(model, monkeypatch, root)
     assert caught.value.code == 2
-    assert "--node" in capsys.readouterr().err
+    assert "--node, --baud" in capsys.readouterr().err

@@ -1,6 +1,7 @@
 """The Rust crate: built, linted, documented and run by cargo, and compared with the model fact by fact."""
 
 import json
+import random
 import re
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
@@ -712,7 +713,10 @@ def edge_objects(like: DictionaryObject) -> tuple[DictionaryObject, ...]:
 def edge_errors(like: ErrorEntry) -> tuple[ErrorEntry, ...]:
     plain = replace(like, slot=None, errata=(), response=None, responses=(), adjustable_in=(), causes=(), remedies=())
     run = (CodeRef(21, 1), CodeRef(21, 2), CodeRef(21, 3), CodeRef(21, 7), CodeRef(31))
+    long = ((0, 300), (7 << 24, 9 << 24))
+    sparse = [(number, number) for number in random.Random(3).sample(range(1 << 16, 7 << 24), 120)]
     return (
+        *(replace(plain, kind="gci", number=one, last=other, name=f"Error {one}") for one, other in (*long, *sparse)),
         replace(plain, kind="device", number=0xFFFF_FFFF, last=0xFFFF_FFFF, name="Last"),
         replace(plain, kind="emergency", number=0, last=0, name="7 up"),
         replace(plain, kind="emergency", number=1, last=3, name="Again", adjustable_in=run, causes=(HOSTILE,)),

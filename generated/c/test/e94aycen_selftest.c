@@ -348,9 +348,10 @@ int main(void)
         printf("codes[%u].min=%lld\n", number, (long long)code->min);
         printf("codes[%u].max=%lld\n", number, (long long)code->max);
         printf("codes[%u].default_value=%lld\n", number, (long long)code->default_value);
-        printf("codes[%u].default_text=%s\n", number, code->default_text != NULL ? code->default_text : "");
+        const char *const text = e94aycen_code_text(code->default_text);
+        printf("codes[%u].default_text=%s\n", number, text != NULL ? text : "");
         printf("codes[%u].default_base=%lu\n", number, (unsigned long)code->default_base);
-        printf("codes[%u].name=%s\n", number, code->name);
+        printf("codes[%u].name=%s\n", number, e94aycen_code_text(code->name));
         failures += e94aycen_find_code(code->number) != code;
     }
     for (size_t i = 0u; i < sizeof e94aycen_defaults / sizeof e94aycen_defaults[0]; i++) {
@@ -359,7 +360,8 @@ int main(void)
         printf("defaults[%u/%u].last=%u\n", code, first, (unsigned)entry->last);
         printf("defaults[%u/%u].has=%u\n", code, first, (unsigned)entry->has);
         printf("defaults[%u/%u].default_value=%lld\n", code, first, (long long)entry->default_value);
-        printf("defaults[%u/%u].default_text=%s\n", code, first, entry->default_text != NULL ? entry->default_text : "");
+        const char *const text = e94aycen_code_text(entry->default_text);
+        printf("defaults[%u/%u].default_text=%s\n", code, first, text != NULL ? text : "");
         printf("defaults[%u/%u].default_base=%lu\n", code, first, (unsigned long)entry->default_base);
         failures += e94aycen_find_default(entry->code, entry->first) != entry;
         failures += e94aycen_find_default(entry->code, entry->last) != entry;
@@ -370,7 +372,7 @@ int main(void)
         const unsigned long first = error->first;
         printf("errors[%u/%lu].last=%lu\n", kind, first, (unsigned long)error->last);
         printf("errors[%u/%lu].response=%u\n", kind, first, (unsigned)error->response);
-        printf("errors[%u/%lu].name=%s\n", kind, first, error->name);
+        printf("errors[%u/%lu].name=%s\n", kind, first, e94aycen_error_text(error->name));
         failures += e94aycen_find_error(error->kind, error->first) != error;
         failures += e94aycen_find_error(error->kind, error->last) != error;
     }

@@ -500,7 +500,7 @@ int main(void)
         const unsigned long first = error->first;
         printf("errors[%u/%lu].last=%lu\n", kind, first, (unsigned long)error->last);
         printf("errors[%u/%lu].response=%u\n", kind, first, (unsigned)error->response);
-        printf("errors[%u/%lu].name=%s\n", kind, first, error->name);
+        printf("errors[%u/%lu].name=%s\n", kind, first, servo931_error_text(error->name));
         failures += servo931_find_error(error->kind, error->first) != error;
         failures += servo931_find_error(error->kind, error->last) != error;
     }

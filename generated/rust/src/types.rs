@@ -1265,54 +1265,100 @@ impl ObjectTable {
     }
 }
 
+/// Perfect hash of the error numbers of one kind: the one place where an entry can be.
+#[derive(Clone, Copy, Debug)]
+pub struct ErrorIndex {
+    /// First number where there are no gaps: the slots are then the numbers in order, and nothing is scattered.
+    pub first: Option<u32>,
+    /// The number times this is scattered over 32 bits.
+    pub factor: u32,
+    /// Bits of the scattered number above this are the slot, changed by a seed where there are seeds.
+    pub shift: u32,
+    /// Bits of the scattered number above this choose the seed.
+    pub seed_shift: u32,
+    /// Seeds, or none.
+    pub seeds: &'static [u8],
+    /// Position of the entry of each slot; their number is a power of two where numbers are scattered.
+    pub places: &'static [u16],
+    /// Positions of the runs that are too long for the slots.
+    pub long: &'static [u16],
+}
+
+impl ErrorIndex {
+    // Always inlined, since the tables are constants: nothing of them but the slots is left then.
+    #[inline(always)]
+    const fn place(&self, number: u32) -> usize {
+        let scattered = number.wrapping_mul(self.factor);
+        let mut slot = scattered >> self.shift;
+        if !self.seeds.is_empty() {
+            slot ^= self.seeds[(scattered >> self.seed_shift) as usize] as u32;
+        }
+        self.places[slot as usize & (self.places.len() - 1)] as usize
+    }
+
+    const fn is_long(&self, place: usize) -> bool {
+        let mut position = 0;
+        while position < self.long.len() {
+            if self.long[position] as usize == place {
+                return true;
+            }
+            position += 1;
+        }
+        false
+    }
+}
+
 /// Error numbers of one kind, ascending.
 #[derive(Clone, Copy, Debug)]
 pub struct ErrorTable {
     kind: &'static str,
     mask: u32,
     entries: &'static [ErrorEntry],
-    firsts: &'static [u32],
     help: &'static [Help],
+    index: ErrorIndex,
 }
 
 impl ErrorTable {
-    /// First numbers of the entries.
-    #[must_use]
-    pub const fn firsts<const N: usize>(entries: &[ErrorEntry]) -> [u32; N] {
-        let mut firsts = [0; N];
-        let mut position = 0;
-        while position < N {
-            firsts[position] = entries[position].number;
-            position += 1;
-        }
-        firsts
-    }
-
-    /// Table of `entries` with their first numbers and help; `mask` holds the bits that tell which error it is.
+    /// Table of `entries` with their help and index; `mask` holds the bits that tell which error it is.
     ///
     /// # Panics
     ///
-    /// Stops the build of a constant when runs overlap, do not ascend or have bits outside `mask`, or when the three
-    /// lists do not belong together.
+    /// Stops the build of a constant when runs overlap, do not ascend or have bits outside `mask`, when entries and
+    /// help do not belong together, or when the index does not lead to each number.
     #[must_use]
     pub const fn new(
         kind: &'static str,
         mask: u32,
         entries: &'static [ErrorEntry],
-        firsts: &'static [u32],
         help: &'static [Help],
+        index: ErrorIndex,
     ) -> Self {
-        assert!(firsts.len() == entries.len() && help.len() == entries.len(), "each entry has its key and its help");
+        assert!(help.len() == entries.len(), "each entry has its help");
+        assert!(index.first.is_some() || index.places.len().is_power_of_two(), "the slots fill a number of bits");
         let mut position = 0;
+        let mut slots = 0;
         while position < entries.len() {
             let entry = &entries[position];
-            assert!(firsts[position] == entry.number, "the key of an entry is its first number");
             assert!(entry.number <= entry.last, "a run must ascend");
             assert!((entry.number | entry.last) & !mask == 0, "numbers must lie within the mask");
             assert!(position == 0 || entries[position - 1].last < entry.number, "runs must ascend and not overlap");
+            let mut number = entry.number;
+            while !index.is_long(position) {
+                let place = match index.first {
+                    Some(first) => index.places[number.wrapping_sub(first) as usize] as usize,
+                    None => index.place(number),
+                };
+                assert!(place == position, "the index must lead to each number");
+                slots += 1;
+                if number == entry.last {
+                    break;
+                }
+                number += 1;
+            }
             position += 1;
         }
-        Self { kind, mask, entries, firsts, help }
+        assert!(index.first.is_none() || index.places.len() == slots, "numbers without gaps have a slot each");
+        Self { kind, mask, entries, help, index }
     }
 
     /// Which list it is: `device`, `emergency`, `sdo_abort`, ...
@@ -1327,13 +1373,25 @@ impl ErrorTable {
         self.mask
     }
 
+    #[inline(always)]
     fn position(&self, number: u32) -> Option<usize> {
         let number = number & self.mask;
-        let position = self.firsts.partition_point(|first| *first <= number).checked_sub(1)?;
-        (number <= self.entries[position].last).then_some(position)
+        if let Some(first) = self.index.first {
+            return self.index.places.get(number.wrapping_sub(first) as usize).map(|place| usize::from(*place));
+        }
+        let holds = |place: usize| {
+            let entry = &self.entries[place];
+            number.wrapping_sub(entry.number) <= entry.last - entry.number
+        };
+        let place = self.index.place(number);
+        if holds(place) {
+            return Some(place);
+        }
+        self.index.long.iter().map(|place| usize::from(*place)).find(|place| holds(*place))
     }
 
     /// Entry of a number as the device reports it; bits outside [`mask`](Self::mask) do not matter.
+    #[inline(always)]
     #[must_use]
     pub fn get(&self, number: u32) -> Option<&'static ErrorEntry> {
         self.position(number).map(|position| &self.entries[position])

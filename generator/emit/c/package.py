@@ -76,9 +76,10 @@ def _example(device: Device) -> Iterator[str]:
     for member in members:
         yield f'        printf("{member}: %lu\\n", (unsigned long)telegram.{member});'
     yield "    }"
-    yield f'    printf("%s\\n", {device.id}_find_code({device_prefix(device)}_{code.designation}_NUMBER)->name);'
-    number = integer(errors[0].number, 32, hexadecimal=True)
-    yield f'    printf("%s\\n", {device.id}_find_reported_error({number})->name);'
+    found_code = f"{device.id}_find_code({device_prefix(device)}_{code.designation}_NUMBER)"
+    found_error = f"{device.id}_find_reported_error({integer(errors[0].number, 32, hexadecimal=True)})"
+    yield f'    printf("%s\\n", {device.id}_code_text({found_code}->name));'
+    yield f'    printf("%s\\n", {device.id}_error_text({found_error}->name));'
     yield "    return 0;"
     yield "}"
 

@@ -6,7 +6,7 @@ from fractions import Fraction
 
 from generator.emit.c.device import device_prefix
 from generator.emit.c.prose import cited, errata, provenance, references
-from generator.emit.c.syntax import comment, integer, paragraph, string
+from generator.emit.c.syntax import comment, integer, paragraph, string, text_size
 from generator.emit.c.writer import Constant, Names, Section, Writer
 from generator.model import Device, IndicatorTable, Light, Manual, Model, Pattern, SwitchGroup, SwitchRow, Where
 from generator.naming import snake
@@ -23,13 +23,15 @@ _FUNCTIONS = ("switch_row", "switch_row_at", "switch_sum", "pattern", "pattern_f
 
 @dataclass(frozen=True, slots=True)
 class SharedPanel:
-    """View of panel.h."""
+    """View of panel.h; the sizes are those of the longest texts of all devices, so that no row has an address in it."""
 
     file: str
     guard: str
     brief: str
     notes: tuple[str, ...]
     section: Section
+    text_size: str
+    colour_size: str
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,6 +57,7 @@ class Indicators:
     title: str
     lines: tuple[str, ...]
     leds: str
+    state_size: str
     rows: tuple[str, ...]
 
 
@@ -88,7 +91,16 @@ def shared_panel(model: Model, names: Names) -> SharedPanel:
     manuals: list[Manual] = [device.manual for device in model.devices if device.switches or device.indicators]
     notes = provenance(model, manuals, sorted({device.manufacturer for device in model.devices}))
     section = writer.section("What an LED does", ["Any: not said, or without meaning."])
-    return SharedPanel("panel.h", guard, "DIP switches and LEDs of all devices.", notes, section)
+    texts = [row.value for device in model.devices for group in device.switches for row in group.rows]
+    colours = [
+        pattern.colour or ""
+        for device in model.devices
+        for table in device.indicators
+        for row in table.rows
+        for pattern in row.patterns
+    ]
+    brief = "DIP switches and LEDs of all devices."
+    return SharedPanel("panel.h", guard, brief, notes, section, _size(texts), _size(colours))
 
 
 def device_panel(model: Model, device: Device, names: Names) -> Panel:
@@ -159,6 +171,7 @@ def _indicators(table: IndicatorTable, device: Device, names: Names) -> Indicato
         title=comment(table.name),
         lines=_paragraphs([f"LEDs: {leds}.", cited(table.cite), *errata(device, table.errata, {})]),
         leds=integer(len(table.leds), 8),
+        state_size=_size([row.state for row in table.rows]),
         rows=tuple(
             f"{string(row.state)}, {{ {', '.join(f'{{ {_pattern(pattern)} }}' for pattern in row.patterns)} }}"
             for row in table.rows
@@ -169,13 +182,18 @@ def _indicators(table: IndicatorTable, device: Device, names: Names) -> Indicato
 def _pattern(pattern: Pattern) -> str:
     return ", ".join(
         (
-            string(pattern.colour) if pattern.colour is not None else "NULL",
+            string(pattern.colour or ""),
             _milliseconds(pattern.period),
             _milliseconds(pattern.pause),
             f"DRIVESPEC_LIGHT_{pattern.light.value.upper()}",
             integer(pattern.flashes or 0, 8),
         )
     )
+
+
+def _size(texts: Sequence[str]) -> str:
+    """Bytes of the longest of texts."""
+    return integer(max(map(text_size, ["", *texts])), 16)
 
 
 def _milliseconds(seconds: Fraction | None) -> str:

@@ -104,6 +104,11 @@ def string(text: str) -> str:
     return '"' + _CONTROL.sub(lambda match: f"\\{ord(match.group()):03o}", escaped) + '"'
 
 
+def text_size(text: str) -> int:
+    """Bytes of the string literal of the text, with its end."""
+    return len(ascii_text(text)) + 1
+
+
 @cache
 def comment(text: str) -> str:
     r"""One line of text for a comment that Doxygen reads: nothing ends the comment, splices lines or is a command.

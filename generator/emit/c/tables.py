@@ -1,24 +1,26 @@
 """<device>_tables.h: the records of one device, and the numbers that its self-test prints of them."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from itertools import groupby
 
 from generator.emit.c.common import ERROR_KINDS, NO_RESPONSE, drive_prefix
 from generator.emit.c.device import DefaultRun, access_flags, code_defaults, device_prefix, error_mask
-from generator.emit.c.hashing import GOLDEN, mixed_kind, perfect_hash
 from generator.emit.c.prose import provenance
-from generator.emit.c.syntax import comment, integer, string
+from generator.emit.c.syntax import comment, integer, string, text_size
 from generator.emit.c.writer import Names, access, wire_limits
+from generator.emit.hashing import perfect_hash
 from generator.model import Code, Device, ErrorEntry, Model, NodeRelative, Slot
 from generator.naming import snake
 
 _NAMES = (
     "codes",
+    "code_text",
+    "code_texts",
     "defaults",
     "errors",
-    "error_seeds",
-    "error_places",
-    "error_runs",
+    "error_text",
+    "error_texts",
     "baud_rates",
     "find_code",
     "find_code_by_index",
@@ -34,17 +36,53 @@ _BYTE = 256
 
 
 @dataclass(frozen=True, slots=True)
-class ErrorHash:
-    """Perfect hash of the single error numbers; ``places`` leads to their records."""
+class Text:
+    """A text with the end that C gives it."""
 
-    kind_factor: str
-    bucket_factor: str
-    bucket_shift: str
+    size: str
+    literal: str
+
+
+class Texts:
+    """Texts one behind the other; the first is empty, so that no text begins at 0."""
+
+    def __init__(self, name: str) -> None:
+        self.name = name
+        self._places = {"": 0}
+        self._end = 1
+
+    def place(self, text: str) -> str:
+        """Where a text begins; the same text is there once."""
+        if text not in self._places:
+            self._places[text] = self._end
+            self._end += text_size(text)
+        return integer(self._places[text], 16)
+
+    @property
+    def texts(self) -> tuple[Text, ...]:
+        """The texts in their order."""
+        return tuple(Text(integer(text_size(text), 16), string(text)) for text in self._places)
+
+
+@dataclass(frozen=True, slots=True)
+class ErrorHash:
+    """Perfect hash of the error numbers of a kind; its places lead to their records.
+
+    ``stem`` begins the names of its tables.  ``first`` is the first number where there are no gaps, else empty.
+    ``long`` are the places of runs that the hash leaves out.
+    """
+
+    kind: str
+    stem: str
+    first: str
+    factor: str
+    shift: str
+    seed_shift: str
     seeds: str
-    slot_factor: str
-    slot_shift: str
+    last_slot: str
     place_type: str
     places: str
+    long: str
 
 
 @dataclass(frozen=True, slots=True)
@@ -68,11 +106,12 @@ class Tables:
     stem: str
     prefix: str
     masked: bool
+    code_texts: Texts
     codes: tuple[str, ...]
     defaults: tuple[str, ...]
+    error_texts: Texts
     errors: tuple[str, ...]
-    error_hash: ErrorHash | None
-    error_runs: str
+    error_hashes: tuple[ErrorHash, ...]
     index_base: str
     slots: tuple[SlotView, ...]
     baud_rates: str
@@ -84,6 +123,7 @@ def device_tables(model: Model, device: Device, names: Names) -> Tables:
     for name in _NAMES:
         names.claim(f"{stem}_{name}", device.where)
     errors = sorted_errors(device)
+    code_texts, error_texts = Texts(f"{stem}_code_texts"), Texts(f"{stem}_error_texts")
     return Tables(
         file=f"{device.id}_tables.h",
         guard=names.claim(f"DRIVESPEC_{prefix}_TABLES_H", device.where),
@@ -93,11 +133,14 @@ def device_tables(model: Model, device: Device, names: Names) -> Tables:
         stem=stem,
         prefix=prefix,
         masked=bool(error_mask(device)),
-        codes=tuple(_code(code) for code in device.codes),
-        defaults=tuple(_run(code, run) for code in device.codes for run in code_defaults(code) if not run.shared),
-        errors=tuple(_error(error, device) for error in errors),
-        error_hash=_hash(errors),
-        error_runs=", ".join(integer(place, 16) for place, error in enumerate(errors) if error.count > 1),
+        code_texts=code_texts,
+        codes=tuple(_code(code, code_texts) for code in device.codes),
+        defaults=tuple(
+            _run(code, run, code_texts) for code in device.codes for run in code_defaults(code) if not run.shared
+        ),
+        error_texts=error_texts,
+        errors=tuple(_error(error, device, error_texts) for error in errors),
+        error_hashes=tuple(_hashes(errors, device, names)),
         index_base=f"{drive_prefix(device.drive)}_INDEX_BASE" if device.drive else "",
         slots=tuple(_slot(slot, device, names) for slot in device.slots),
         baud_rates=", ".join(integer(rate, 16) for rate in device.canopen.baud_rates) if device.canopen else "",
@@ -109,22 +152,29 @@ def _slot(slot: Slot, device: Device, names: Names) -> SlotView:
     return SlotView(comment(slot.name), function, f"{device_prefix(device)}_{slot.name}")
 
 
-def _hash(errors: Sequence[ErrorEntry]) -> ErrorHash | None:
-    singles = [place for place, error in enumerate(errors) if error.count == 1]
-    if not singles:
-        return None
-    keys = [mixed_kind(ERROR_KINDS.index(errors[place].kind), errors[place].number) for place in singles]
-    found = perfect_hash(keys)
-    return ErrorHash(
-        kind_factor=integer(GOLDEN, 32, hexadecimal=True),
-        bucket_factor=integer(found.first, 32, hexadecimal=True),
-        bucket_shift=integer(found.bucket_shift, 8),
-        seeds=", ".join(integer(seed, 8) for seed in found.seeds),
-        slot_factor=integer(found.second, 32, hexadecimal=True),
-        slot_shift=integer(found.slot_shift, 8),
-        place_type="uint8_t" if len(errors) <= _BYTE else "uint16_t",
-        places=", ".join(integer(singles[place], 16) for place in found.places),
-    )
+def _hashes(errors: Sequence[ErrorEntry], device: Device, names: Names) -> Iterator[ErrorHash]:
+    """Hashes of the kinds that the device has; ``errors`` are its records, sorted by kind."""
+    first = 0
+    for kind, group in groupby(errors, key=lambda error: error.kind):
+        runs = [(error.number, error.last) for error in group]
+        found = perfect_hash(runs)
+        stem = f"{device_prefix(device).lower()}_{kind}_error"
+        for name in ("seeds", "places", "long"):
+            names.claim(f"{stem}_{name}", device.where)
+        yield ErrorHash(
+            kind=f"DRIVESPEC_ERROR_{kind.upper()}",
+            stem=stem,
+            first="" if found.first is None else integer(found.first, 32, hexadecimal=True),
+            factor=integer(found.factor, 32, hexadecimal=True),
+            shift=integer(found.shift, 8),
+            seed_shift=integer(found.seed_shift, 8),
+            seeds=", ".join(integer(seed, 8) for seed in found.seeds),
+            last_slot=integer(len(found.places) - 1, 32),
+            place_type="uint8_t" if len(errors) <= _BYTE else "uint16_t",
+            places=", ".join(integer(first + place, 16) for place in found.places),
+            long=", ".join(integer(first + place, 16) for place in found.long),
+        )
+        first += len(runs)
 
 
 def sorted_errors(device: Device) -> list[ErrorEntry]:
@@ -141,7 +191,7 @@ def response_value(error: ErrorEntry, device: Device) -> int:
     return NO_RESPONSE
 
 
-def _code(code: Code) -> str:
+def _code(code: Code, texts: Texts) -> str:
     shared = [run for run in code_defaults(code) if run.shared]
     default = shared[0] if shared else None
     low, high = wire_limits(code.range, code.scaling or 1) if code.range else (0, 0)
@@ -149,8 +199,8 @@ def _code(code: Code) -> str:
         (
             integer(low, 64, signed=True),
             integer(high, 64, signed=True),
-            *_default(default),
-            string(code.name),
+            *_default(default, texts),
+            texts.place(code.name),
             integer(code.scaling or 0, 32),
             integer(code.number, 16),
             integer(code.index, 16, hexadecimal=True),
@@ -163,10 +213,10 @@ def _code(code: Code) -> str:
     )
 
 
-def _run(code: Code, run: DefaultRun) -> str:
+def _run(code: Code, run: DefaultRun, texts: Texts) -> str:
     return ", ".join(
         (
-            *_default(run),
+            *_default(run, texts),
             integer(code.number, 16),
             _has(False, run),
             integer(run.first, 8),
@@ -175,13 +225,13 @@ def _run(code: Code, run: DefaultRun) -> str:
     )
 
 
-def _default(run: DefaultRun | None) -> tuple[str, str, str]:
+def _default(run: DefaultRun | None, texts: Texts) -> tuple[str, str, str]:
     """Members ``default_value``, ``default_text`` and ``default_base``."""
     value = run.value if run else None
     base = _base(run)
     return (
         integer(value if isinstance(value, int) else 0, 64, signed=True),
-        string(value) if isinstance(value, str) else "NULL",
+        texts.place(value) if isinstance(value, str) else "0u",
         integer(base.base if base else 0, 32, hexadecimal=True),
     )
 
@@ -202,10 +252,10 @@ def _has(has_range: bool, run: DefaultRun | None) -> str:
     return " | ".join(flags) or "0u"
 
 
-def _error(error: ErrorEntry, device: Device) -> str:
+def _error(error: ErrorEntry, device: Device, texts: Texts) -> str:
     return ", ".join(
         (
-            string(error.name),
+            texts.place(error.name),
             integer(error.number, 32, hexadecimal=True),
             integer(error.last, 32, hexadecimal=True),
             f"DRIVESPEC_ERROR_{error.kind.upper()}",

@@ -192,7 +192,7 @@ def _command(dictionary: ObjectDictionary) -> str:
         options.append(f"--slot {dictionary.slot}")
     if dictionary.product.label:
         options.append(f"--product {'_'.join(_WORD.findall(dictionary.product.label))}")
-    return f"python -m generator dcf {' '.join(options)} --node NODE"
+    return f"python -m generator dcf {' '.join(options)} --node NODE --baud RATE"
 
 
 # PROFIBUS

@@ -118,7 +118,7 @@ def device_frame(
     """
     page = page_of(device, part)
     items = tuple(NavItem(it.text, it.href, it.count, it.href == page and not entry) for it in parts)
-    crumbs = [Piece(device.title, page_of(device))] if part else []
+    crumbs = [Piece(device.order_code, page_of(device))] if part else []
     crumbs += [Piece(it.text, it.href) for it in items if entry and it.href == page]
     return Frame(
         path=page_of(device, entry) if entry else page,

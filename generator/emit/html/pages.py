@@ -220,7 +220,7 @@ def _entry_pages(model: Model, links: Links, nav: Sequence[NavItem], part: str) 
             part=part,
             entry=entry.anchors[0].id,
             title=piece.text,
-            description=_described(entry, f"{device.order_code} {piece.text}"),
+            description=_described(device, entry, piece.text),
             neighbours=neighbours,
         )
         yield Page(frame, "entry", EntryView(entry))
@@ -247,9 +247,9 @@ def _named(entry: Entry) -> str:
     return f"{numbers} {entry.name}" if entry.name else numbers
 
 
-def _described(entry: Entry, name: str) -> str:
+def _described(device: Device, entry: Entry, name: str) -> str:
     facts = ", ".join(f"{fact.label.lower()} {plain(fact.value)}" for fact in entry.facts if fact.value != NONE)
-    return " ".join(part for part in (f"{name}.", plain(entry.lead), facts) if part)
+    return " ".join(part for part in (f"{device.order_code}, {name}.", plain(entry.lead), facts) if part)
 
 
 def _groups(links: Links, part: str) -> tuple[Group, ...]:

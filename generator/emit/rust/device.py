@@ -7,6 +7,7 @@ from itertools import pairwise
 from generator.emit import names
 from generator.emit.base import EmitError
 from generator.emit.environment import render
+from generator.emit.hashing import PerfectHash, perfect_hash
 from generator.emit.rust import facts, lists, words
 from generator.emit.rust.drive import drive_module
 from generator.emit.rust.notice import notice
@@ -23,6 +24,7 @@ from generator.emit.rust.syntax import (
     doc,
     hexadecimal,
     markdown,
+    numbers,
     some,
     string,
     struct,
@@ -300,13 +302,14 @@ class DeviceFiles:
         errors = self.error_tables[kind]
         digits = 4 if errors[-1].last <= 0xFFFF else 8
         scope = Scope(f"errors of kind {kind} of {self.module.name}")
-        for name in ("TABLE", "ENTRIES", "HELP", "FIRSTS"):
+        for name in ("TABLE", "ENTRIES", "HELP", "INDEX", "PLACES", "SEEDS"):
             scope.add(name, self.device.where)
         named = list(zip(_error_names(errors), errors, strict=True))
         for name, error in named:
             scope.add(name, error.where)
             if error.count > 1:
                 scope.add(f"{name}_LAST", error.where)
+        index = perfect_hash([(error.number, error.last) for error in errors])
         return self._fill(
             "error_kind",
             kind=kind,
@@ -314,6 +317,9 @@ class DeviceFiles:
             entries=_private("ENTRIES", "&[ErrorEntry]", (_error_record(error, name) for name, error in named)),
             help=_private("HELP", "&[Help]", map(facts.help_texts, errors)),
             mask=hexadecimal(self.error_mask(kind), 8),
+            seeds=numbers(index.seeds) if index.seeds else "",
+            places=numbers(index.places),
+            index=declaration("INDEX", "ErrorIndex", _index(index), visibility=""),
         )
 
     def _error(self, error: ErrorEntry, name: str, digits: int) -> Error:
@@ -333,6 +339,21 @@ class DeviceFiles:
 def _digits(code: Code) -> int:
     """Hexadecimal digits of the code's values, 0 where they are written as decimal numbers."""
     return code.data_type.bits // 4 if code.is_bitfield else 0
+
+
+def _index(index: PerfectHash) -> Expression:
+    return struct(
+        "ErrorIndex",
+        (
+            ("first", "None" if index.first is None else some(hexadecimal(index.first, 8))),
+            ("factor", hexadecimal(index.factor, 8)),
+            ("shift", str(index.shift)),
+            ("seed_shift", str(index.seed_shift)),
+            ("seeds", "SEEDS" if index.seeds else "&[]"),
+            ("places", "PLACES"),
+            ("long", array(map(str, index.long))),
+        ),
+    )
 
 
 def _private(name: str, kind: str, items: Iterable[Expression]) -> str:

@@ -1,6 +1,7 @@
 """Rust as text: literals, expressions broken as rustfmt breaks them, documentation comments, names of types."""
 
 import re
+import textwrap
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
@@ -61,6 +62,14 @@ def array(items: Iterable[Expression]) -> Expression:
     if not listed:
         return "&[]"
     return prefixed("&[", listed[0], "]") if len(listed) == 1 else _group("&[", listed, "]", "")
+
+
+def numbers(values: Iterable[int]) -> str:
+    """Lines of the items of an array, as many on a line as fit; for what rustfmt is told to leave alone."""
+    indent = " " * _INDENT
+    return textwrap.fill(
+        " ".join(f"{value}," for value in values), WIDTH, initial_indent=indent, subsequent_indent=indent
+    )
 
 
 def prefixed(before: str, expression: Expression, after: str = "") -> Expression:

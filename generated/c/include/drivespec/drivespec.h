@@ -204,9 +204,9 @@ typedef struct drivespec_code {
     int64_t min; ///< Least value; see DRIVESPEC_HAS_RANGE.
     int64_t max; ///< Largest value; see DRIVESPEC_HAS_RANGE.
     int64_t default_value; ///< Default of every subcode; see DRIVESPEC_HAS_DEFAULT.
-    const char *default_text; ///< Default of a text, else NULL.
+    uint32_t default_text; ///< Default of a text, for ..._code_text; else 0.
     uint32_t default_base; ///< Default less the node address; see DRIVESPEC_HAS_DEFAULT_BASE.
-    const char *name; ///< Name in the manual.
+    uint32_t name; ///< Name in the manual, for ..._code_text.
     uint32_t scaling; ///< Wire value = value * this; 0 where none is printed.
     uint16_t number; ///< Number of the code.
     uint16_t index; ///< Index.
@@ -220,7 +220,7 @@ typedef struct drivespec_code {
 /** Default of a run of subcodes, for codes whose subcodes have different defaults. */
 typedef struct drivespec_default {
     int64_t default_value; ///< Default; see DRIVESPEC_HAS_DEFAULT.
-    const char *default_text; ///< Default of a text, else NULL.
+    uint32_t default_text; ///< Default of a text, for ..._code_text; else 0.
     uint32_t default_base; ///< Default less the node address; see DRIVESPEC_HAS_DEFAULT_BASE.
     uint16_t code; ///< Number of the code.
     uint8_t has; ///< DRIVESPEC_HAS_... flags.
@@ -230,7 +230,7 @@ typedef struct drivespec_default {
 
 /** Record of an error number or of a run of them. */
 typedef struct drivespec_error {
-    const char *name; ///< Designation in the manual.
+    uint32_t name; ///< Designation in the manual, for ..._error_text.
     uint32_t first; ///< First number.
     uint32_t last; ///< Last number; the first for a single one.
     uint8_t kind; ///< DRIVESPEC_ERROR_...
@@ -393,11 +393,11 @@ static inline const drivespec_code *drivespec_find_code(const drivespec_code *co
     return (found->number == number) ? found : NULL;
 }
 
-/** First record of a name, NULL where there is none. */
+/** First record of a name, NULL where there is none; @p texts holds the names. */
 static inline const drivespec_code *drivespec_find_name(const drivespec_code *first, const drivespec_code *end,
-                                                        const char *name)
+                                                        const char *texts, const char *name)
 {
-    while ((first != end) && !drivespec_same_text(first->name, name)) {
+    while ((first != end) && !drivespec_same_text(texts + first->name, name)) {
         first++;
     }
     return (first != end) ? first : NULL;

@@ -292,12 +292,12 @@ static inline bool e94aycca_switch_baud_rate_position(uint32_t value, uint32_t *
  * EDS94AYCCA-EN-5.0, 11.1 p. 86.
  */
 typedef struct e94aycca_led_ms_row {
-    const char *state; ///< What it means.
+    char state[22u]; ///< What it means.
     drivespec_pattern patterns[1u]; ///< Of each LED, in the order above.
 } e94aycca_led_ms_row;
 
 static const e94aycca_led_ms_row e94aycca_led_ms_rows[] = {
-    {"Supplied with voltage", { { NULL, 0u, 0u, DRIVESPEC_LIGHT_ON, 0u } }},
+    {"Supplied with voltage", { { "", 0u, 0u, DRIVESPEC_LIGHT_ON, 0u } }},
 };
 
 /** Row of what is seen of each LED, an exact one rather than one that agrees; NULL where there is none. */
@@ -324,12 +324,12 @@ static inline const e94aycca_led_ms_row *e94aycca_led_ms_find(const drivespec_pa
  * EDS94AYCCA-EN-5.0, 11.1 p. 86.
  */
 typedef struct e94aycca_led_de_row {
-    const char *state; ///< What it means.
+    char state[36u]; ///< What it means.
     drivespec_pattern patterns[1u]; ///< Of each LED, in the order above.
 } e94aycca_led_de_row;
 
 static const e94aycca_led_de_row e94aycca_led_de_rows[] = {
-    {"Not accepted by the standard device", { { NULL, 0u, 0u, DRIVESPEC_LIGHT_ON, 0u } }},
+    {"Not accepted by the standard device", { { "", 0u, 0u, DRIVESPEC_LIGHT_ON, 0u } }},
 };
 
 /** Row of what is seen of each LED, an exact one rather than one that agrees; NULL where there is none. */
@@ -356,23 +356,23 @@ static inline const e94aycca_led_de_row *e94aycca_led_de_find(const drivespec_pa
  * EDS94AYCCA-EN-5.0, 11.1 p. 87.
  */
 typedef struct e94aycca_led_bs_be_row {
-    const char *state; ///< What it means.
+    char state[40u]; ///< What it means.
     drivespec_pattern patterns[2u]; ///< Of each LED, in the order above.
 } e94aycca_led_bs_be_row;
 
 static const e94aycca_led_bs_be_row e94aycca_led_bs_be_rows[] = {
-    {"Bus off", { { NULL, 0u, 0u, DRIVESPEC_LIGHT_OFF, 0u }, { NULL, 0u, 0u, DRIVESPEC_LIGHT_ON, 0u } }},
-    {"Automatic detection of the baud rate", { { NULL, 0u, 0u, DRIVESPEC_LIGHT_FLICKER, 0u }, { NULL, 0u, 0u, DRIVESPEC_LIGHT_FLICKER, 0u } }},
-    {"Pre-operational", { { NULL, 200u, 0u, DRIVESPEC_LIGHT_BLINK, 0u }, { NULL, 0u, 0u, DRIVESPEC_LIGHT_OFF, 0u } }},
-    {"Pre-operational / Warning limit reached", { { NULL, 200u, 0u, DRIVESPEC_LIGHT_BLINK, 0u }, { NULL, 0u, 1000u, DRIVESPEC_LIGHT_FLASH, 1u } }},
-    {"Pre-operational / Node guard event", { { NULL, 200u, 0u, DRIVESPEC_LIGHT_BLINK, 0u }, { NULL, 0u, 1000u, DRIVESPEC_LIGHT_FLASH, 2u } }},
-    {"Operational", { { NULL, 0u, 0u, DRIVESPEC_LIGHT_ON, 0u }, { NULL, 0u, 0u, DRIVESPEC_LIGHT_OFF, 0u } }},
-    {"Operational / Warning limit reached", { { NULL, 0u, 0u, DRIVESPEC_LIGHT_ON, 0u }, { NULL, 0u, 1000u, DRIVESPEC_LIGHT_FLASH, 1u } }},
-    {"Operational / Node guard event", { { NULL, 0u, 0u, DRIVESPEC_LIGHT_ON, 0u }, { NULL, 0u, 1000u, DRIVESPEC_LIGHT_FLASH, 2u } }},
-    {"Operational / Sync message error", { { NULL, 0u, 0u, DRIVESPEC_LIGHT_ON, 0u }, { NULL, 0u, 1000u, DRIVESPEC_LIGHT_FLASH, 3u } }},
-    {"Stopped", { { NULL, 1000u, 0u, DRIVESPEC_LIGHT_BLINK, 0u }, { NULL, 0u, 0u, DRIVESPEC_LIGHT_OFF, 0u } }},
-    {"Stopped / Warning limit reached", { { NULL, 1000u, 0u, DRIVESPEC_LIGHT_BLINK, 0u }, { NULL, 0u, 1000u, DRIVESPEC_LIGHT_FLASH, 1u } }},
-    {"Stopped / Node guard event", { { NULL, 1000u, 0u, DRIVESPEC_LIGHT_BLINK, 0u }, { NULL, 0u, 1000u, DRIVESPEC_LIGHT_FLASH, 2u } }},
+    {"Bus off", { { "", 0u, 0u, DRIVESPEC_LIGHT_OFF, 0u }, { "", 0u, 0u, DRIVESPEC_LIGHT_ON, 0u } }},
+    {"Automatic detection of the baud rate", { { "", 0u, 0u, DRIVESPEC_LIGHT_FLICKER, 0u }, { "", 0u, 0u, DRIVESPEC_LIGHT_FLICKER, 0u } }},
+    {"Pre-operational", { { "", 200u, 0u, DRIVESPEC_LIGHT_BLINK, 0u }, { "", 0u, 0u, DRIVESPEC_LIGHT_OFF, 0u } }},
+    {"Pre-operational / Warning limit reached", { { "", 200u, 0u, DRIVESPEC_LIGHT_BLINK, 0u }, { "", 0u, 1000u, DRIVESPEC_LIGHT_FLASH, 1u } }},
+    {"Pre-operational / Node guard event", { { "", 200u, 0u, DRIVESPEC_LIGHT_BLINK, 0u }, { "", 0u, 1000u, DRIVESPEC_LIGHT_FLASH, 2u } }},
+    {"Operational", { { "", 0u, 0u, DRIVESPEC_LIGHT_ON, 0u }, { "", 0u, 0u, DRIVESPEC_LIGHT_OFF, 0u } }},
+    {"Operational / Warning limit reached", { { "", 0u, 0u, DRIVESPEC_LIGHT_ON, 0u }, { "", 0u, 1000u, DRIVESPEC_LIGHT_FLASH, 1u } }},
+    {"Operational / Node guard event", { { "", 0u, 0u, DRIVESPEC_LIGHT_ON, 0u }, { "", 0u, 1000u, DRIVESPEC_LIGHT_FLASH, 2u } }},
+    {"Operational / Sync message error", { { "", 0u, 0u, DRIVESPEC_LIGHT_ON, 0u }, { "", 0u, 1000u, DRIVESPEC_LIGHT_FLASH, 3u } }},
+    {"Stopped", { { "", 1000u, 0u, DRIVESPEC_LIGHT_BLINK, 0u }, { "", 0u, 0u, DRIVESPEC_LIGHT_OFF, 0u } }},
+    {"Stopped / Warning limit reached", { { "", 1000u, 0u, DRIVESPEC_LIGHT_BLINK, 0u }, { "", 0u, 1000u, DRIVESPEC_LIGHT_FLASH, 1u } }},
+    {"Stopped / Node guard event", { { "", 1000u, 0u, DRIVESPEC_LIGHT_BLINK, 0u }, { "", 0u, 1000u, DRIVESPEC_LIGHT_FLASH, 2u } }},
 };
 
 /** Row of what is seen of each LED, an exact one rather than one that agrees; NULL where there is none. */

@@ -18,12 +18,12 @@
  * EDS94AYCEN-EN-9.0, 8.1 p. 52.
  */
 typedef struct e94aycen_led_ms_row {
-    const char *state; ///< What it means.
+    char state[22u]; ///< What it means.
     drivespec_pattern patterns[1u]; ///< Of each LED, in the order above.
 } e94aycen_led_ms_row;
 
 static const e94aycen_led_ms_row e94aycen_led_ms_rows[] = {
-    {"Supplied with voltage", { { NULL, 0u, 0u, DRIVESPEC_LIGHT_ON, 0u } }},
+    {"Supplied with voltage", { { "", 0u, 0u, DRIVESPEC_LIGHT_ON, 0u } }},
 };
 
 /** Row of what is seen of each LED, an exact one rather than one that agrees; NULL where there is none. */
@@ -50,12 +50,12 @@ static inline const e94aycen_led_ms_row *e94aycen_led_ms_find(const drivespec_pa
  * EDS94AYCEN-EN-9.0, 8.1 p. 52.
  */
 typedef struct e94aycen_led_de_row {
-    const char *state; ///< What it means.
+    char state[13u]; ///< What it means.
     drivespec_pattern patterns[1u]; ///< Of each LED, in the order above.
 } e94aycen_led_de_row;
 
 static const e94aycen_led_de_row e94aycen_led_de_rows[] = {
-    {"Not accepted", { { NULL, 0u, 0u, DRIVESPEC_LIGHT_ON, 0u } }},
+    {"Not accepted", { { "", 0u, 0u, DRIVESPEC_LIGHT_ON, 0u } }},
 };
 
 /** Row of what is seen of each LED, an exact one rather than one that agrees; NULL where there is none. */
@@ -82,12 +82,12 @@ static inline const e94aycen_led_de_row *e94aycen_led_de_find(const drivespec_pa
  * EDS94AYCEN-EN-9.0, 8.1 p. 52.
  */
 typedef struct e94aycen_led_socket_green_row {
-    const char *state; ///< What it means.
+    char state[32u]; ///< What it means.
     drivespec_pattern patterns[1u]; ///< Of each LED, in the order above.
 } e94aycen_led_socket_green_row;
 
 static const e94aycen_led_socket_green_row e94aycen_led_socket_green_rows[] = {
-    {"Ethernet connection established", { { NULL, 0u, 0u, DRIVESPEC_LIGHT_ON, 0u } }},
+    {"Ethernet connection established", { { "", 0u, 0u, DRIVESPEC_LIGHT_ON, 0u } }},
 };
 
 /** Row of what is seen of each LED, an exact one rather than one that agrees; NULL where there is none. */
@@ -114,12 +114,12 @@ static inline const e94aycen_led_socket_green_row *e94aycen_led_socket_green_fin
  * EDS94AYCEN-EN-9.0, 8.1 p. 52.
  */
 typedef struct e94aycen_led_socket_yellow_row {
-    const char *state; ///< What it means.
+    char state[14u]; ///< What it means.
     drivespec_pattern patterns[1u]; ///< Of each LED, in the order above.
 } e94aycen_led_socket_yellow_row;
 
 static const e94aycen_led_socket_yellow_row e94aycen_led_socket_yellow_rows[] = {
-    {"Data exchange", { { NULL, 0u, 0u, DRIVESPEC_LIGHT_ON_OR_FLICKER, 0u } }},
+    {"Data exchange", { { "", 0u, 0u, DRIVESPEC_LIGHT_ON_OR_FLICKER, 0u } }},
 };
 
 /** Row of what is seen of each LED, an exact one rather than one that agrees; NULL where there is none. */

@@ -12,29 +12,66 @@
 
 #include "e94aycen.h"
 
+/** Texts of codes; the records hold where each begins, so that no table has an address in it. */
+static const struct e94aycen_code_texts {
+    char text_0[1u];
+    char text_1[29u];
+    char text_2[28u];
+    char text_3[28u];
+    char text_4[21u];
+    char text_5[26u];
+    char text_6[25u];
+    char text_7[17u];
+    char text_8[19u];
+    char text_9[12u];
+    char text_10[20u];
+    char text_11[20u];
+    char text_12[25u];
+} e94aycen_code_texts = {
+    "",
+    "Resp. to imp. device config.",
+    "Resp. to new module in MXI1",
+    "Resp. to new module in MXI2",
+    "Ethernet: IP address",
+    "Ethernet: Subnetwork mask",
+    "Ethernet gateway address",
+    "Ethernet: MAC-ID",
+    "Resolved IP-Adress",
+    "Use of DHCP",
+    "Ethernet node state",
+    "Resolved Subnetmask",
+    "Resolved Gateway-Address",
+};
+
+/** Text of a record of a code, NULL where there is none. */
+static inline const char *e94aycen_code_text(uint32_t text)
+{
+    return (text != 0u) ? (const char *)&e94aycen_code_texts + text : NULL;
+}
+
 /** Codes, by number. */
 static const drivespec_code e94aycen_codes[E94AYCEN_CODE_COUNT] = {
-    {INT64_C(0), INT64_C(0), INT64_C(0), NULL, UINT32_C(0x00000000), "Resp. to imp. device config.", UINT32_C(1), 615u, 0x5D98u, (DRIVESPEC_ACCESS_READ | DRIVESPEC_ACCESS_WRITE), DRIVESPEC_TYPE_UNSIGNED32, 0u, 5u, 5u},
-    {INT64_C(0), INT64_C(0), INT64_C(4), NULL, UINT32_C(0x00000000), "Resp. to new module in MXI1", UINT32_C(1), 636u, 0x5D83u, (DRIVESPEC_ACCESS_READ | DRIVESPEC_ACCESS_WRITE), DRIVESPEC_TYPE_UNSIGNED32, DRIVESPEC_HAS_DEFAULT, 0u, 0u},
-    {INT64_C(0), INT64_C(0), INT64_C(4), NULL, UINT32_C(0x00000000), "Resp. to new module in MXI2", UINT32_C(1), 637u, 0x5D82u, (DRIVESPEC_ACCESS_READ | DRIVESPEC_ACCESS_WRITE), DRIVESPEC_TYPE_UNSIGNED32, DRIVESPEC_HAS_DEFAULT, 0u, 0u},
-    {INT64_C(0), INT64_C(255), INT64_C(0), NULL, UINT32_C(0x00000000), "Ethernet: IP address", UINT32_C(1), 13000u, 0x2D37u, (DRIVESPEC_ACCESS_READ | DRIVESPEC_ACCESS_WRITE), DRIVESPEC_TYPE_UNSIGNED8, DRIVESPEC_HAS_RANGE, 4u, 4u},
-    {INT64_C(0), INT64_C(255), INT64_C(0), NULL, UINT32_C(0x00000000), "Ethernet: Subnetwork mask", UINT32_C(1), 13001u, 0x2D36u, (DRIVESPEC_ACCESS_READ | DRIVESPEC_ACCESS_WRITE), DRIVESPEC_TYPE_UNSIGNED8, DRIVESPEC_HAS_RANGE, 4u, 4u},
-    {INT64_C(0), INT64_C(255), INT64_C(0), NULL, UINT32_C(0x00000000), "Ethernet gateway address", UINT32_C(1), 13002u, 0x2D35u, (DRIVESPEC_ACCESS_READ | DRIVESPEC_ACCESS_WRITE), DRIVESPEC_TYPE_UNSIGNED8, DRIVESPEC_HAS_RANGE, 4u, 4u},
-    {INT64_C(0), INT64_C(255), INT64_C(0), NULL, UINT32_C(0x00000000), "Ethernet: MAC-ID", UINT32_C(1), 13003u, 0x2D34u, DRIVESPEC_ACCESS_READ, DRIVESPEC_TYPE_UNSIGNED8, DRIVESPEC_HAS_RANGE, 6u, 6u},
-    {INT64_C(0), INT64_C(255), INT64_C(0), NULL, UINT32_C(0x00000000), "Resolved IP-Adress", UINT32_C(1), 13004u, 0x2D33u, DRIVESPEC_ACCESS_READ, DRIVESPEC_TYPE_UNSIGNED8, DRIVESPEC_HAS_RANGE, 4u, 4u},
-    {INT64_C(0), INT64_C(0), INT64_C(0), NULL, UINT32_C(0x00000000), "Use of DHCP", UINT32_C(1), 13005u, 0x2D32u, (DRIVESPEC_ACCESS_READ | DRIVESPEC_ACCESS_WRITE), DRIVESPEC_TYPE_UNSIGNED8, DRIVESPEC_HAS_DEFAULT, 0u, 0u},
-    {INT64_C(0), INT64_C(0), INT64_C(0), NULL, UINT32_C(0x00000000), "Ethernet node state", UINT32_C(1), 13006u, 0x2D31u, DRIVESPEC_ACCESS_READ, DRIVESPEC_TYPE_UNSIGNED8, 0u, 0u, 0u},
-    {INT64_C(0), INT64_C(255), INT64_C(0), NULL, UINT32_C(0x00000000), "Resolved Subnetmask", UINT32_C(1), 13007u, 0x2D30u, DRIVESPEC_ACCESS_READ, DRIVESPEC_TYPE_UNSIGNED8, DRIVESPEC_HAS_RANGE, 4u, 4u},
-    {INT64_C(0), INT64_C(255), INT64_C(0), NULL, UINT32_C(0x00000000), "Resolved Gateway-Address", UINT32_C(1), 13008u, 0x2D2Fu, DRIVESPEC_ACCESS_READ, DRIVESPEC_TYPE_UNSIGNED8, DRIVESPEC_HAS_RANGE, 4u, 4u},
-    {INT64_C(0), INT64_C(255), INT64_C(0), NULL, UINT32_C(0x00000000), "Ethernet: IP address", UINT32_C(1), 14000u, 0x294Fu, (DRIVESPEC_ACCESS_READ | DRIVESPEC_ACCESS_WRITE), DRIVESPEC_TYPE_UNSIGNED8, DRIVESPEC_HAS_RANGE, 4u, 4u},
-    {INT64_C(0), INT64_C(255), INT64_C(0), NULL, UINT32_C(0x00000000), "Ethernet: Subnetwork mask", UINT32_C(1), 14001u, 0x294Eu, (DRIVESPEC_ACCESS_READ | DRIVESPEC_ACCESS_WRITE), DRIVESPEC_TYPE_UNSIGNED8, DRIVESPEC_HAS_RANGE, 4u, 4u},
-    {INT64_C(0), INT64_C(255), INT64_C(0), NULL, UINT32_C(0x00000000), "Ethernet gateway address", UINT32_C(1), 14002u, 0x294Du, (DRIVESPEC_ACCESS_READ | DRIVESPEC_ACCESS_WRITE), DRIVESPEC_TYPE_UNSIGNED8, DRIVESPEC_HAS_RANGE, 4u, 4u},
-    {INT64_C(0), INT64_C(255), INT64_C(0), NULL, UINT32_C(0x00000000), "Ethernet: MAC-ID", UINT32_C(1), 14003u, 0x294Cu, DRIVESPEC_ACCESS_READ, DRIVESPEC_TYPE_UNSIGNED8, DRIVESPEC_HAS_RANGE, 6u, 6u},
-    {INT64_C(0), INT64_C(255), INT64_C(0), NULL, UINT32_C(0x00000000), "Resolved IP-Adress", UINT32_C(1), 14004u, 0x294Bu, DRIVESPEC_ACCESS_READ, DRIVESPEC_TYPE_UNSIGNED8, DRIVESPEC_HAS_RANGE, 4u, 4u},
-    {INT64_C(0), INT64_C(0), INT64_C(0), NULL, UINT32_C(0x00000000), "Use of DHCP", UINT32_C(1), 14005u, 0x294Au, (DRIVESPEC_ACCESS_READ | DRIVESPEC_ACCESS_WRITE), DRIVESPEC_TYPE_UNSIGNED8, DRIVESPEC_HAS_DEFAULT, 0u, 0u},
-    {INT64_C(0), INT64_C(0), INT64_C(0), NULL, UINT32_C(0x00000000), "Ethernet node state", UINT32_C(1), 14006u, 0x2949u, DRIVESPEC_ACCESS_READ, DRIVESPEC_TYPE_UNSIGNED8, 0u, 0u, 0u},
-    {INT64_C(0), INT64_C(255), INT64_C(0), NULL, UINT32_C(0x00000000), "Resolved Subnetmask", UINT32_C(1), 14007u, 0x2948u, DRIVESPEC_ACCESS_READ, DRIVESPEC_TYPE_UNSIGNED8, DRIVESPEC_HAS_RANGE, 4u, 4u},
-    {INT64_C(0), INT64_C(255), INT64_C(0), NULL, UINT32_C(0x00000000), "Resolved Gateway-Address", UINT32_C(1), 14008u, 0x2947u, DRIVESPEC_ACCESS_READ, DRIVESPEC_TYPE_UNSIGNED8, DRIVESPEC_HAS_RANGE, 4u, 4u},
+    {INT64_C(0), INT64_C(0), INT64_C(0), 0u, UINT32_C(0x00000000), 1u, UINT32_C(1), 615u, 0x5D98u, (DRIVESPEC_ACCESS_READ | DRIVESPEC_ACCESS_WRITE), DRIVESPEC_TYPE_UNSIGNED32, 0u, 5u, 5u},
+    {INT64_C(0), INT64_C(0), INT64_C(4), 0u, UINT32_C(0x00000000), 30u, UINT32_C(1), 636u, 0x5D83u, (DRIVESPEC_ACCESS_READ | DRIVESPEC_ACCESS_WRITE), DRIVESPEC_TYPE_UNSIGNED32, DRIVESPEC_HAS_DEFAULT, 0u, 0u},
+    {INT64_C(0), INT64_C(0), INT64_C(4), 0u, UINT32_C(0x00000000), 58u, UINT32_C(1), 637u, 0x5D82u, (DRIVESPEC_ACCESS_READ | DRIVESPEC_ACCESS_WRITE), DRIVESPEC_TYPE_UNSIGNED32, DRIVESPEC_HAS_DEFAULT, 0u, 0u},
+    {INT64_C(0), INT64_C(255), INT64_C(0), 0u, UINT32_C(0x00000000), 86u, UINT32_C(1), 13000u, 0x2D37u, (DRIVESPEC_ACCESS_READ | DRIVESPEC_ACCESS_WRITE), DRIVESPEC_TYPE_UNSIGNED8, DRIVESPEC_HAS_RANGE, 4u, 4u},
+    {INT64_C(0), INT64_C(255), INT64_C(0), 0u, UINT32_C(0x00000000), 107u, UINT32_C(1), 13001u, 0x2D36u, (DRIVESPEC_ACCESS_READ | DRIVESPEC_ACCESS_WRITE), DRIVESPEC_TYPE_UNSIGNED8, DRIVESPEC_HAS_RANGE, 4u, 4u},
+    {INT64_C(0), INT64_C(255), INT64_C(0), 0u, UINT32_C(0x00000000), 133u, UINT32_C(1), 13002u, 0x2D35u, (DRIVESPEC_ACCESS_READ | DRIVESPEC_ACCESS_WRITE), DRIVESPEC_TYPE_UNSIGNED8, DRIVESPEC_HAS_RANGE, 4u, 4u},
+    {INT64_C(0), INT64_C(255), INT64_C(0), 0u, UINT32_C(0x00000000), 158u, UINT32_C(1), 13003u, 0x2D34u, DRIVESPEC_ACCESS_READ, DRIVESPEC_TYPE_UNSIGNED8, DRIVESPEC_HAS_RANGE, 6u, 6u},
+    {INT64_C(0), INT64_C(255), INT64_C(0), 0u, UINT32_C(0x00000000), 175u, UINT32_C(1), 13004u, 0x2D33u, DRIVESPEC_ACCESS_READ, DRIVESPEC_TYPE_UNSIGNED8, DRIVESPEC_HAS_RANGE, 4u, 4u},
+    {INT64_C(0), INT64_C(0), INT64_C(0), 0u, UINT32_C(0x00000000), 194u, UINT32_C(1), 13005u, 0x2D32u, (DRIVESPEC_ACCESS_READ | DRIVESPEC_ACCESS_WRITE), DRIVESPEC_TYPE_UNSIGNED8, DRIVESPEC_HAS_DEFAULT, 0u, 0u},
+    {INT64_C(0), INT64_C(0), INT64_C(0), 0u, UINT32_C(0x00000000), 206u, UINT32_C(1), 13006u, 0x2D31u, DRIVESPEC_ACCESS_READ, DRIVESPEC_TYPE_UNSIGNED8, 0u, 0u, 0u},
+    {INT64_C(0), INT64_C(255), INT64_C(0), 0u, UINT32_C(0x00000000), 226u, UINT32_C(1), 13007u, 0x2D30u, DRIVESPEC_ACCESS_READ, DRIVESPEC_TYPE_UNSIGNED8, DRIVESPEC_HAS_RANGE, 4u, 4u},
+    {INT64_C(0), INT64_C(255), INT64_C(0), 0u, UINT32_C(0x00000000), 246u, UINT32_C(1), 13008u, 0x2D2Fu, DRIVESPEC_ACCESS_READ, DRIVESPEC_TYPE_UNSIGNED8, DRIVESPEC_HAS_RANGE, 4u, 4u},
+    {INT64_C(0), INT64_C(255), INT64_C(0), 0u, UINT32_C(0x00000000), 86u, UINT32_C(1), 14000u, 0x294Fu, (DRIVESPEC_ACCESS_READ | DRIVESPEC_ACCESS_WRITE), DRIVESPEC_TYPE_UNSIGNED8, DRIVESPEC_HAS_RANGE, 4u, 4u},
+    {INT64_C(0), INT64_C(255), INT64_C(0), 0u, UINT32_C(0x00000000), 107u, UINT32_C(1), 14001u, 0x294Eu, (DRIVESPEC_ACCESS_READ | DRIVESPEC_ACCESS_WRITE), DRIVESPEC_TYPE_UNSIGNED8, DRIVESPEC_HAS_RANGE, 4u, 4u},
+    {INT64_C(0), INT64_C(255), INT64_C(0), 0u, UINT32_C(0x00000000), 133u, UINT32_C(1), 14002u, 0x294Du, (DRIVESPEC_ACCESS_READ | DRIVESPEC_ACCESS_WRITE), DRIVESPEC_TYPE_UNSIGNED8, DRIVESPEC_HAS_RANGE, 4u, 4u},
+    {INT64_C(0), INT64_C(255), INT64_C(0), 0u, UINT32_C(0x00000000), 158u, UINT32_C(1), 14003u, 0x294Cu, DRIVESPEC_ACCESS_READ, DRIVESPEC_TYPE_UNSIGNED8, DRIVESPEC_HAS_RANGE, 6u, 6u},
+    {INT64_C(0), INT64_C(255), INT64_C(0), 0u, UINT32_C(0x00000000), 175u, UINT32_C(1), 14004u, 0x294Bu, DRIVESPEC_ACCESS_READ, DRIVESPEC_TYPE_UNSIGNED8, DRIVESPEC_HAS_RANGE, 4u, 4u},
+    {INT64_C(0), INT64_C(0), INT64_C(0), 0u, UINT32_C(0x00000000), 194u, UINT32_C(1), 14005u, 0x294Au, (DRIVESPEC_ACCESS_READ | DRIVESPEC_ACCESS_WRITE), DRIVESPEC_TYPE_UNSIGNED8, DRIVESPEC_HAS_DEFAULT, 0u, 0u},
+    {INT64_C(0), INT64_C(0), INT64_C(0), 0u, UINT32_C(0x00000000), 206u, UINT32_C(1), 14006u, 0x2949u, DRIVESPEC_ACCESS_READ, DRIVESPEC_TYPE_UNSIGNED8, 0u, 0u, 0u},
+    {INT64_C(0), INT64_C(255), INT64_C(0), 0u, UINT32_C(0x00000000), 226u, UINT32_C(1), 14007u, 0x2948u, DRIVESPEC_ACCESS_READ, DRIVESPEC_TYPE_UNSIGNED8, DRIVESPEC_HAS_RANGE, 4u, 4u},
+    {INT64_C(0), INT64_C(255), INT64_C(0), 0u, UINT32_C(0x00000000), 246u, UINT32_C(1), 14008u, 0x2947u, DRIVESPEC_ACCESS_READ, DRIVESPEC_TYPE_UNSIGNED8, DRIVESPEC_HAS_RANGE, 4u, 4u},
 };
 
 /** Record of a code, NULL where there is none. */
@@ -54,7 +91,8 @@ static inline const drivespec_code *e94aycen_find_code_by_name(const char *name,
 {
     const drivespec_code *const end = e94aycen_codes + E94AYCEN_CODE_COUNT;
 
-    return drivespec_find_name((after != NULL) ? after + 1 : e94aycen_codes, end, name);
+    return drivespec_find_name((after != NULL) ? after + 1 : e94aycen_codes, end,
+                               (const char *)&e94aycen_code_texts, name);
 }
 
 /** Number that a code of any slot has in slot MXI1; other numbers stay as they are. */
@@ -83,25 +121,25 @@ static inline uint16_t e94aycen_code_in_mxi2(uint16_t number)
 
 /** Defaults of codes whose subcodes differ, by code and subcode. */
 static const drivespec_default e94aycen_defaults[] = {
-    {INT64_C(0), NULL, UINT32_C(0x00000000), 615u, DRIVESPEC_HAS_DEFAULT, 1u, 1u},
-    {INT64_C(1), NULL, UINT32_C(0x00000000), 615u, DRIVESPEC_HAS_DEFAULT, 2u, 3u},
-    {INT64_C(0), NULL, UINT32_C(0x00000000), 615u, DRIVESPEC_HAS_DEFAULT, 4u, 5u},
-    {INT64_C(127), NULL, UINT32_C(0x00000000), 13000u, DRIVESPEC_HAS_DEFAULT, 1u, 1u},
-    {INT64_C(0), NULL, UINT32_C(0x00000000), 13000u, DRIVESPEC_HAS_DEFAULT, 2u, 3u},
-    {INT64_C(1), NULL, UINT32_C(0x00000000), 13000u, DRIVESPEC_HAS_DEFAULT, 4u, 4u},
-    {INT64_C(255), NULL, UINT32_C(0x00000000), 13001u, DRIVESPEC_HAS_DEFAULT, 1u, 3u},
-    {INT64_C(0), NULL, UINT32_C(0x00000000), 13001u, DRIVESPEC_HAS_DEFAULT, 4u, 4u},
-    {INT64_C(127), NULL, UINT32_C(0x00000000), 13002u, DRIVESPEC_HAS_DEFAULT, 1u, 1u},
-    {INT64_C(0), NULL, UINT32_C(0x00000000), 13002u, DRIVESPEC_HAS_DEFAULT, 2u, 3u},
-    {INT64_C(1), NULL, UINT32_C(0x00000000), 13002u, DRIVESPEC_HAS_DEFAULT, 4u, 4u},
-    {INT64_C(127), NULL, UINT32_C(0x00000000), 14000u, DRIVESPEC_HAS_DEFAULT, 1u, 1u},
-    {INT64_C(0), NULL, UINT32_C(0x00000000), 14000u, DRIVESPEC_HAS_DEFAULT, 2u, 3u},
-    {INT64_C(1), NULL, UINT32_C(0x00000000), 14000u, DRIVESPEC_HAS_DEFAULT, 4u, 4u},
-    {INT64_C(255), NULL, UINT32_C(0x00000000), 14001u, DRIVESPEC_HAS_DEFAULT, 1u, 3u},
-    {INT64_C(0), NULL, UINT32_C(0x00000000), 14001u, DRIVESPEC_HAS_DEFAULT, 4u, 4u},
-    {INT64_C(127), NULL, UINT32_C(0x00000000), 14002u, DRIVESPEC_HAS_DEFAULT, 1u, 1u},
-    {INT64_C(0), NULL, UINT32_C(0x00000000), 14002u, DRIVESPEC_HAS_DEFAULT, 2u, 3u},
-    {INT64_C(1), NULL, UINT32_C(0x00000000), 14002u, DRIVESPEC_HAS_DEFAULT, 4u, 4u},
+    {INT64_C(0), 0u, UINT32_C(0x00000000), 615u, DRIVESPEC_HAS_DEFAULT, 1u, 1u},
+    {INT64_C(1), 0u, UINT32_C(0x00000000), 615u, DRIVESPEC_HAS_DEFAULT, 2u, 3u},
+    {INT64_C(0), 0u, UINT32_C(0x00000000), 615u, DRIVESPEC_HAS_DEFAULT, 4u, 5u},
+    {INT64_C(127), 0u, UINT32_C(0x00000000), 13000u, DRIVESPEC_HAS_DEFAULT, 1u, 1u},
+    {INT64_C(0), 0u, UINT32_C(0x00000000), 13000u, DRIVESPEC_HAS_DEFAULT, 2u, 3u},
+    {INT64_C(1), 0u, UINT32_C(0x00000000), 13000u, DRIVESPEC_HAS_DEFAULT, 4u, 4u},
+    {INT64_C(255), 0u, UINT32_C(0x00000000), 13001u, DRIVESPEC_HAS_DEFAULT, 1u, 3u},
+    {INT64_C(0), 0u, UINT32_C(0x00000000), 13001u, DRIVESPEC_HAS_DEFAULT, 4u, 4u},
+    {INT64_C(127), 0u, UINT32_C(0x00000000), 13002u, DRIVESPEC_HAS_DEFAULT, 1u, 1u},
+    {INT64_C(0), 0u, UINT32_C(0x00000000), 13002u, DRIVESPEC_HAS_DEFAULT, 2u, 3u},
+    {INT64_C(1), 0u, UINT32_C(0x00000000), 13002u, DRIVESPEC_HAS_DEFAULT, 4u, 4u},
+    {INT64_C(127), 0u, UINT32_C(0x00000000), 14000u, DRIVESPEC_HAS_DEFAULT, 1u, 1u},
+    {INT64_C(0), 0u, UINT32_C(0x00000000), 14000u, DRIVESPEC_HAS_DEFAULT, 2u, 3u},
+    {INT64_C(1), 0u, UINT32_C(0x00000000), 14000u, DRIVESPEC_HAS_DEFAULT, 4u, 4u},
+    {INT64_C(255), 0u, UINT32_C(0x00000000), 14001u, DRIVESPEC_HAS_DEFAULT, 1u, 3u},
+    {INT64_C(0), 0u, UINT32_C(0x00000000), 14001u, DRIVESPEC_HAS_DEFAULT, 4u, 4u},
+    {INT64_C(127), 0u, UINT32_C(0x00000000), 14002u, DRIVESPEC_HAS_DEFAULT, 1u, 1u},
+    {INT64_C(0), 0u, UINT32_C(0x00000000), 14002u, DRIVESPEC_HAS_DEFAULT, 2u, 3u},
+    {INT64_C(1), 0u, UINT32_C(0x00000000), 14002u, DRIVESPEC_HAS_DEFAULT, 4u, 4u},
 };
 
 /** Default of a subcode of such a code, NULL where there is none. */
@@ -111,62 +149,143 @@ static inline const drivespec_default *e94aycen_find_default(uint16_t code, uint
                                   sizeof e94aycen_defaults / sizeof e94aycen_defaults[0], code, subcode);
 }
 
-/** Error numbers, by kind and number. */
-static const drivespec_error e94aycen_errors[E94AYCEN_ERROR_COUNT] = {
-    {"Invalid type", UINT32_C(0x0000840B), UINT32_C(0x0000840B), DRIVESPEC_ERROR_GCI, 255u},
-    {"FB not found", UINT32_C(0x0000840D), UINT32_C(0x0000840D), DRIVESPEC_ERROR_GCI, 255u},
-    {"Invalid size", UINT32_C(0x00008414), UINT32_C(0x00008414), DRIVESPEC_ERROR_GCI, 255u},
-    {"Not in select list", UINT32_C(0x00008415), UINT32_C(0x00008415), DRIVESPEC_ERROR_GCI, 255u},
-    {"Read not allowed", UINT32_C(0x00008416), UINT32_C(0x00008416), DRIVESPEC_ERROR_GCI, 255u},
-    {"Write not allowed", UINT32_C(0x00008417), UINT32_C(0x00008417), DRIVESPEC_ERROR_GCI, 255u},
-    {"CINH not set", UINT32_C(0x00008418), UINT32_C(0x00008418), DRIVESPEC_ERROR_GCI, 255u},
-    {"PLC not stopped", UINT32_C(0x00008419), UINT32_C(0x00008419), DRIVESPEC_ERROR_GCI, 255u},
-    {"Invalid index", UINT32_C(0x00008424), UINT32_C(0x00008424), DRIVESPEC_ERROR_GCI, 255u},
-    {"Invalid subindex", UINT32_C(0x00008425), UINT32_C(0x00008425), DRIVESPEC_ERROR_GCI, 255u},
-    {"Access not allowed", UINT32_C(0x0000842D), UINT32_C(0x0000842D), DRIVESPEC_ERROR_GCI, 255u},
-    {"Invalid length", UINT32_C(0x00008438), UINT32_C(0x00008438), DRIVESPEC_ERROR_GCI, 255u},
-    {"Unallowed characters", UINT32_C(0x00008446), UINT32_C(0x00008446), DRIVESPEC_ERROR_GCI, 255u},
-    {"No array parameter", UINT32_C(0x00008449), UINT32_C(0x00008449), DRIVESPEC_ERROR_GCI, 255u},
-    {"Invalid select index", UINT32_C(0x00008452), UINT32_C(0x00008452), DRIVESPEC_ERROR_GCI, 255u},
-    {"No memory available", UINT32_C(0x00009002), UINT32_C(0x00009002), DRIVESPEC_ERROR_GCI, 255u},
-    {"No TID available", UINT32_C(0x00009003), UINT32_C(0x00009003), DRIVESPEC_ERROR_GCI, 255u},
-    {"Channel init error", UINT32_C(0x00009004), UINT32_C(0x00009004), DRIVESPEC_ERROR_GCI, 255u},
-    {"Error if not connected", UINT32_C(0x00009005), UINT32_C(0x00009005), DRIVESPEC_ERROR_GCI, 255u},
-    {"Error of send function", UINT32_C(0x00009006), UINT32_C(0x00009006), DRIVESPEC_ERROR_GCI, 255u},
-    {"Error of receive function", UINT32_C(0x00009007), UINT32_C(0x00009007), DRIVESPEC_ERROR_GCI, 255u},
-    {"Timeout error of msg wait function", UINT32_C(0x00009008), UINT32_C(0x00009008), DRIVESPEC_ERROR_GCI, 255u},
-    {"Wrong GMT received", UINT32_C(0x00009009), UINT32_C(0x00009009), DRIVESPEC_ERROR_GCI, 255u},
-    {"Unknown server request", UINT32_C(0x0000900A), UINT32_C(0x0000900A), DRIVESPEC_ERROR_GCI, 255u},
-    {"Wrong server parameter", UINT32_C(0x0000900B), UINT32_C(0x0000900B), DRIVESPEC_ERROR_GCI, 255u},
-    {"Server queue is full", UINT32_C(0x0000900C), UINT32_C(0x0000900C), DRIVESPEC_ERROR_GCI, 255u},
-    {"SRV send error", UINT32_C(0x0000900D), UINT32_C(0x0000900D), DRIVESPEC_ERROR_GCI, 255u},
-    {"SRV timeout", UINT32_C(0x0000900E), UINT32_C(0x0000900E), DRIVESPEC_ERROR_GCI, 255u},
-    {"Wrong client parameter", UINT32_C(0x0000900F), UINT32_C(0x0000900F), DRIVESPEC_ERROR_GCI, 255u},
-    {"Wrong channel number", UINT32_C(0x00009010), UINT32_C(0x00009010), DRIVESPEC_ERROR_GCI, 255u},
-    {"TX conversion error", UINT32_C(0x00009011), UINT32_C(0x00009011), DRIVESPEC_ERROR_GCI, 255u},
-    {"RX conversion error", UINT32_C(0x00009012), UINT32_C(0x00009012), DRIVESPEC_ERROR_GCI, 255u},
-    {"Retry number abort", UINT32_C(0x00009013), UINT32_C(0x00009013), DRIVESPEC_ERROR_GCI, 255u},
-    {"Unknown client response", UINT32_C(0x00009014), UINT32_C(0x00009014), DRIVESPEC_ERROR_GCI, 255u},
+/** Texts of errors; the records hold where each begins. */
+static const struct e94aycen_error_texts {
+    char text_0[1u];
+    char text_1[13u];
+    char text_2[13u];
+    char text_3[13u];
+    char text_4[19u];
+    char text_5[17u];
+    char text_6[18u];
+    char text_7[13u];
+    char text_8[16u];
+    char text_9[14u];
+    char text_10[17u];
+    char text_11[19u];
+    char text_12[15u];
+    char text_13[21u];
+    char text_14[19u];
+    char text_15[21u];
+    char text_16[20u];
+    char text_17[17u];
+    char text_18[19u];
+    char text_19[23u];
+    char text_20[23u];
+    char text_21[26u];
+    char text_22[35u];
+    char text_23[19u];
+    char text_24[23u];
+    char text_25[23u];
+    char text_26[21u];
+    char text_27[15u];
+    char text_28[12u];
+    char text_29[23u];
+    char text_30[21u];
+    char text_31[20u];
+    char text_32[20u];
+    char text_33[19u];
+    char text_34[24u];
+} e94aycen_error_texts = {
+    "",
+    "Invalid type",
+    "FB not found",
+    "Invalid size",
+    "Not in select list",
+    "Read not allowed",
+    "Write not allowed",
+    "CINH not set",
+    "PLC not stopped",
+    "Invalid index",
+    "Invalid subindex",
+    "Access not allowed",
+    "Invalid length",
+    "Unallowed characters",
+    "No array parameter",
+    "Invalid select index",
+    "No memory available",
+    "No TID available",
+    "Channel init error",
+    "Error if not connected",
+    "Error of send function",
+    "Error of receive function",
+    "Timeout error of msg wait function",
+    "Wrong GMT received",
+    "Unknown server request",
+    "Wrong server parameter",
+    "Server queue is full",
+    "SRV send error",
+    "SRV timeout",
+    "Wrong client parameter",
+    "Wrong channel number",
+    "TX conversion error",
+    "RX conversion error",
+    "Retry number abort",
+    "Unknown client response",
 };
 
-/** Perfect hash of the single error numbers: seed by bucket, record by slot. */
-static const uint8_t e94aycen_error_seeds[] = {0u, 0u, 0u, 0u, 3u, 6u, 1u, 0u, 0u, 0u, 0u, 4u, 3u, 2u, 0u, 2u};
-static const uint8_t e94aycen_error_places[] = {24u, 0u, 0u, 33u, 0u, 0u, 0u, 5u, 3u, 0u, 0u, 26u, 0u, 0u, 30u, 31u, 0u, 0u, 15u, 25u, 0u, 13u, 19u, 0u, 10u, 0u, 23u, 0u, 0u, 27u, 1u, 0u, 0u, 16u, 2u, 0u, 0u, 20u, 18u, 0u, 0u, 7u, 8u, 0u, 28u, 0u, 0u, 14u, 32u, 6u, 0u, 0u, 17u, 22u, 0u, 0u, 4u, 9u, 0u, 12u, 11u, 21u, 0u, 29u};
+/** Text of a record of an error, NULL where there is none. */
+static inline const char *e94aycen_error_text(uint32_t text)
+{
+    return (text != 0u) ? (const char *)&e94aycen_error_texts + text : NULL;
+}
+
+/** Error numbers, by kind and number. */
+static const drivespec_error e94aycen_errors[E94AYCEN_ERROR_COUNT] = {
+    {1u, UINT32_C(0x0000840B), UINT32_C(0x0000840B), DRIVESPEC_ERROR_GCI, 255u},
+    {14u, UINT32_C(0x0000840D), UINT32_C(0x0000840D), DRIVESPEC_ERROR_GCI, 255u},
+    {27u, UINT32_C(0x00008414), UINT32_C(0x00008414), DRIVESPEC_ERROR_GCI, 255u},
+    {40u, UINT32_C(0x00008415), UINT32_C(0x00008415), DRIVESPEC_ERROR_GCI, 255u},
+    {59u, UINT32_C(0x00008416), UINT32_C(0x00008416), DRIVESPEC_ERROR_GCI, 255u},
+    {76u, UINT32_C(0x00008417), UINT32_C(0x00008417), DRIVESPEC_ERROR_GCI, 255u},
+    {94u, UINT32_C(0x00008418), UINT32_C(0x00008418), DRIVESPEC_ERROR_GCI, 255u},
+    {107u, UINT32_C(0x00008419), UINT32_C(0x00008419), DRIVESPEC_ERROR_GCI, 255u},
+    {123u, UINT32_C(0x00008424), UINT32_C(0x00008424), DRIVESPEC_ERROR_GCI, 255u},
+    {137u, UINT32_C(0x00008425), UINT32_C(0x00008425), DRIVESPEC_ERROR_GCI, 255u},
+    {154u, UINT32_C(0x0000842D), UINT32_C(0x0000842D), DRIVESPEC_ERROR_GCI, 255u},
+    {173u, UINT32_C(0x00008438), UINT32_C(0x00008438), DRIVESPEC_ERROR_GCI, 255u},
+    {188u, UINT32_C(0x00008446), UINT32_C(0x00008446), DRIVESPEC_ERROR_GCI, 255u},
+    {209u, UINT32_C(0x00008449), UINT32_C(0x00008449), DRIVESPEC_ERROR_GCI, 255u},
+    {228u, UINT32_C(0x00008452), UINT32_C(0x00008452), DRIVESPEC_ERROR_GCI, 255u},
+    {249u, UINT32_C(0x00009002), UINT32_C(0x00009002), DRIVESPEC_ERROR_GCI, 255u},
+    {269u, UINT32_C(0x00009003), UINT32_C(0x00009003), DRIVESPEC_ERROR_GCI, 255u},
+    {286u, UINT32_C(0x00009004), UINT32_C(0x00009004), DRIVESPEC_ERROR_GCI, 255u},
+    {305u, UINT32_C(0x00009005), UINT32_C(0x00009005), DRIVESPEC_ERROR_GCI, 255u},
+    {328u, UINT32_C(0x00009006), UINT32_C(0x00009006), DRIVESPEC_ERROR_GCI, 255u},
+    {351u, UINT32_C(0x00009007), UINT32_C(0x00009007), DRIVESPEC_ERROR_GCI, 255u},
+    {377u, UINT32_C(0x00009008), UINT32_C(0x00009008), DRIVESPEC_ERROR_GCI, 255u},
+    {412u, UINT32_C(0x00009009), UINT32_C(0x00009009), DRIVESPEC_ERROR_GCI, 255u},
+    {431u, UINT32_C(0x0000900A), UINT32_C(0x0000900A), DRIVESPEC_ERROR_GCI, 255u},
+    {454u, UINT32_C(0x0000900B), UINT32_C(0x0000900B), DRIVESPEC_ERROR_GCI, 255u},
+    {477u, UINT32_C(0x0000900C), UINT32_C(0x0000900C), DRIVESPEC_ERROR_GCI, 255u},
+    {498u, UINT32_C(0x0000900D), UINT32_C(0x0000900D), DRIVESPEC_ERROR_GCI, 255u},
+    {513u, UINT32_C(0x0000900E), UINT32_C(0x0000900E), DRIVESPEC_ERROR_GCI, 255u},
+    {525u, UINT32_C(0x0000900F), UINT32_C(0x0000900F), DRIVESPEC_ERROR_GCI, 255u},
+    {548u, UINT32_C(0x00009010), UINT32_C(0x00009010), DRIVESPEC_ERROR_GCI, 255u},
+    {569u, UINT32_C(0x00009011), UINT32_C(0x00009011), DRIVESPEC_ERROR_GCI, 255u},
+    {589u, UINT32_C(0x00009012), UINT32_C(0x00009012), DRIVESPEC_ERROR_GCI, 255u},
+    {609u, UINT32_C(0x00009013), UINT32_C(0x00009013), DRIVESPEC_ERROR_GCI, 255u},
+    {628u, UINT32_C(0x00009014), UINT32_C(0x00009014), DRIVESPEC_ERROR_GCI, 255u},
+};
+
+/** Perfect hash of the numbers of DRIVESPEC_ERROR_GCI: records by slot. */
+static const uint8_t e94aycen_gci_error_places[] = {0u, 26u, 0u, 6u, 31u, 13u, 0u, 0u, 11u, 0u, 19u, 0u, 0u, 24u, 4u, 0u, 29u, 0u, 0u, 0u, 0u, 0u, 17u, 9u, 22u, 0u, 2u, 27u, 0u, 7u, 32u, 0u, 0u, 15u, 0u, 1u, 20u, 0u, 0u, 25u, 10u, 5u, 30u, 0u, 0u, 0u, 0u, 0u, 18u, 14u, 0u, 23u, 3u, 0u, 28u, 12u, 33u, 0u, 0u, 16u, 0u, 8u, 21u, 0u};
 
 /** Record of an error number, NULL where there is none. */
 static inline const drivespec_error *e94aycen_find_error(uint8_t kind, uint32_t number)
 {
-    const drivespec_error *const errors = e94aycen_errors;
+    const drivespec_error *found = NULL;
+    uint32_t hash = number;
 
-    const uint32_t key = number ^ (uint32_t)(kind * UINT32_C(0x9E3779B1));
-    const uint32_t bucket = (uint32_t)(key * UINT32_C(0x9E3779B3)) >> 28u;
-    const uint32_t factor = UINT32_C(0x3C55BFC3) + 2u * (uint32_t)e94aycen_error_seeds[bucket];
-    const uint32_t slot = (uint32_t)((key ^ (key >> 15)) * factor) >> 26u;
-    const drivespec_error *const single = &errors[e94aycen_error_places[slot]];
-    if ((single->first == number) && (single->kind == kind)) {
-        return single;
+    switch (kind) {
+    case DRIVESPEC_ERROR_GCI:
+        hash = (uint32_t)(hash * UINT32_C(0x68B4D115)) >> 26u;
+        found = &e94aycen_errors[e94aycen_gci_error_places[hash]];
+        break;
+    default:
+        return NULL;
     }
-    return NULL;
+    return ((number - found->first) <= (found->last - found->first)) ? found : NULL;
 }
 
 #endif

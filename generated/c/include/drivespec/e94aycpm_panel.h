@@ -272,13 +272,13 @@ static inline bool e94aycpm_switch_emf2133ib_compatibility_position(uint32_t val
  * EDS94AYCPM-EN-12.0, 12.1 p. 82.
  */
 typedef struct e94aycpm_led_ms_row {
-    const char *state; ///< What it means.
+    char state[41u]; ///< What it means.
     drivespec_pattern patterns[1u]; ///< Of each LED, in the order above.
 } e94aycpm_led_ms_row;
 
 static const e94aycpm_led_ms_row e94aycpm_led_ms_rows[] = {
-    {"Connected to the standard device", { { NULL, 0u, 0u, DRIVESPEC_LIGHT_ON, 0u } }},
-    {"Not yet connected to the standard device", { { NULL, 0u, 0u, DRIVESPEC_LIGHT_BLINK, 0u } }},
+    {"Connected to the standard device", { { "", 0u, 0u, DRIVESPEC_LIGHT_ON, 0u } }},
+    {"Not yet connected to the standard device", { { "", 0u, 0u, DRIVESPEC_LIGHT_BLINK, 0u } }},
 };
 
 /** Row of what is seen of each LED, an exact one rather than one that agrees; NULL where there is none. */
@@ -305,12 +305,12 @@ static inline const e94aycpm_led_ms_row *e94aycpm_led_ms_find(const drivespec_pa
  * EDS94AYCPM-EN-12.0, 12.1 p. 82.
  */
 typedef struct e94aycpm_led_me_row {
-    const char *state; ///< What it means.
+    char state[34u]; ///< What it means.
     drivespec_pattern patterns[1u]; ///< Of each LED, in the order above.
 } e94aycpm_led_me_row;
 
 static const e94aycpm_led_me_row e94aycpm_led_me_rows[] = {
-    {"Error of the communication module", { { NULL, 0u, 0u, DRIVESPEC_LIGHT_ON, 0u } }},
+    {"Error of the communication module", { { "", 0u, 0u, DRIVESPEC_LIGHT_ON, 0u } }},
 };
 
 /** Row of what is seen of each LED, an exact one rather than one that agrees; NULL where there is none. */
@@ -337,13 +337,13 @@ static inline const e94aycpm_led_me_row *e94aycpm_led_me_find(const drivespec_pa
  * EDS94AYCPM-EN-12.0, 12.1 p. 82.
  */
 typedef struct e94aycpm_led_bs_row {
-    const char *state; ///< What it means.
+    char state[43u]; ///< What it means.
     drivespec_pattern patterns[1u]; ///< Of each LED, in the order above.
 } e94aycpm_led_bs_row;
 
 static const e94aycpm_led_bs_row e94aycpm_led_bs_rows[] = {
-    {"DATA_EXCH (\"Data_Exchange\")", { { NULL, 0u, 0u, DRIVESPEC_LIGHT_BLINK, 0u } }},
-    {"Not active on the fieldbus or initialising", { { NULL, 0u, 0u, DRIVESPEC_LIGHT_OFF, 0u } }},
+    {"DATA_EXCH (\"Data_Exchange\")", { { "", 0u, 0u, DRIVESPEC_LIGHT_BLINK, 0u } }},
+    {"Not active on the fieldbus or initialising", { { "", 0u, 0u, DRIVESPEC_LIGHT_OFF, 0u } }},
 };
 
 /** Row of what is seen of each LED, an exact one rather than one that agrees; NULL where there is none. */
@@ -370,12 +370,12 @@ static inline const e94aycpm_led_bs_row *e94aycpm_led_bs_find(const drivespec_pa
  * EDS94AYCPM-EN-12.0, 12.1 p. 82.
  */
 typedef struct e94aycpm_led_be_row {
-    const char *state; ///< What it means.
+    char state[16u]; ///< What it means.
     drivespec_pattern patterns[1u]; ///< Of each LED, in the order above.
 } e94aycpm_led_be_row;
 
 static const e94aycpm_led_be_row e94aycpm_led_be_rows[] = {
-    {"Bus error/fault", { { NULL, 0u, 0u, DRIVESPEC_LIGHT_ON, 0u } }},
+    {"Bus error/fault", { { "", 0u, 0u, DRIVESPEC_LIGHT_ON, 0u } }},
 };
 
 /** Row of what is seen of each LED, an exact one rather than one that agrees; NULL where there is none. */
@@ -402,12 +402,12 @@ static inline const e94aycpm_led_be_row *e94aycpm_led_be_find(const drivespec_pa
  * EDS94AYCPM-EN-12.0, 12.1 p. 82.
  */
 typedef struct e94aycpm_led_de_row {
-    const char *state; ///< What it means.
+    char state[43u]; ///< What it means.
     drivespec_pattern patterns[1u]; ///< Of each LED, in the order above.
 } e94aycpm_led_de_row;
 
 static const e94aycpm_led_de_row e94aycpm_led_de_rows[] = {
-    {"Not accepted or standard device not active", { { NULL, 0u, 0u, DRIVESPEC_LIGHT_ON, 0u } }},
+    {"Not accepted or standard device not active", { { "", 0u, 0u, DRIVESPEC_LIGHT_ON, 0u } }},
 };
 
 /** Row of what is seen of each LED, an exact one rather than one that agrees; NULL where there is none. */

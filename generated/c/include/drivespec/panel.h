@@ -33,16 +33,16 @@
 
 /** Row of a table of DIP switches. */
 typedef struct drivespec_switch_row {
-    const char *text; ///< What the position sets, as printed.
+    char text[37u]; ///< What the position sets, as printed.
     uint32_t value; ///< The text as a number; see has_value.
     uint16_t mask; ///< Switches that matter.
     uint16_t position; ///< Those of them that are ON.
     bool has_value; ///< Whether the text is a number.
 } drivespec_switch_row;
 
-/** What an LED does, seen or printed; what is 0 or NULL is not known. */
+/** What an LED does, seen or printed; what is 0 or empty is not known. */
 typedef struct drivespec_pattern {
-    const char *colour; ///< Colour of an LED with several, else NULL.
+    char colour[1u]; ///< Colour of an LED with several, else empty.
     uint16_t period_ms; ///< Milliseconds after which a blinking LED changes.
     uint16_t pause_ms; ///< Milliseconds of darkness after flashes.
     uint8_t light; ///< DRIVESPEC_LIGHT_...
@@ -88,11 +88,8 @@ static inline bool drivespec_pattern_fits(const drivespec_pattern *printed, cons
     if (!drivespec_light_fits(printed->light, seen->light)) {
         return false;
     }
-    if ((printed->colour != NULL) && (seen->colour != NULL)) {
-        if (!drivespec_same_text(printed->colour, seen->colour)) {
-            return false;
-        }
-    } else if (exact && (printed->colour != seen->colour)) {
+    if (!drivespec_same_text(printed->colour, seen->colour) &&
+        (exact || ((printed->colour[0] != '\0') && (seen->colour[0] != '\0')))) {
         return false;
     }
     return ((printed->period_ms == seen->period_ms) ||

@@ -12,45 +12,98 @@
 
 #include "servo931.h"
 
-/** Error numbers, by kind and number. */
-static const drivespec_error servo931_errors[SERVO931_ERROR_COUNT] = {
-    {"Error 46", UINT32_C(0x00008120), UINT32_C(0x00008120), DRIVESPEC_ERROR_EMERGENCY, 255u},
-    {"Access to object is not supported", UINT32_C(0x06010000), UINT32_C(0x06010000), DRIVESPEC_ERROR_SDO_ABORT, 255u},
-    {"Attempt to read a write-only object", UINT32_C(0x06010001), UINT32_C(0x06010001), DRIVESPEC_ERROR_SDO_ABORT, 255u},
-    {"Attempt to write to a read-only object", UINT32_C(0x06010002), UINT32_C(0x06010002), DRIVESPEC_ERROR_SDO_ABORT, 255u},
-    {"Object does not exist in the object directory", UINT32_C(0x06020000), UINT32_C(0x06020000), DRIVESPEC_ERROR_SDO_ABORT, 255u},
-    {"Object cannot be mapped to the PDO", UINT32_C(0x06040041), UINT32_C(0x06040041), DRIVESPEC_ERROR_SDO_ABORT, 255u},
-    {"The number and length of objects to be mapped would exceed PDO length.", UINT32_C(0x06040042), UINT32_C(0x06040042), DRIVESPEC_ERROR_SDO_ABORT, 255u},
-    {"Data type does not match, length of service parameter does not match", UINT32_C(0x06070010), UINT32_C(0x06070010), DRIVESPEC_ERROR_SDO_ABORT, 255u},
-    {"Data type does not match, length of service parameter is too large", UINT32_C(0x06070012), UINT32_C(0x06070012), DRIVESPEC_ERROR_SDO_ABORT, 255u},
-    {"Data type does not match, length of service parameter is too small", UINT32_C(0x06070013), UINT32_C(0x06070013), DRIVESPEC_ERROR_SDO_ABORT, 255u},
-    {"Subindex does not exist", UINT32_C(0x06090011), UINT32_C(0x06090011), DRIVESPEC_ERROR_SDO_ABORT, 255u},
-    {"Value range of parameter exceeded", UINT32_C(0x06090030), UINT32_C(0x06090030), DRIVESPEC_ERROR_SDO_ABORT, 255u},
-    {"Parameter values too large", UINT32_C(0x06090031), UINT32_C(0x06090031), DRIVESPEC_ERROR_SDO_ABORT, 255u},
-    {"Parameter values too small", UINT32_C(0x06090032), UINT32_C(0x06090032), DRIVESPEC_ERROR_SDO_ABORT, 255u},
-    {"Data cannot be transferred/saved to the application.", UINT32_C(0x08000020), UINT32_C(0x08000020), DRIVESPEC_ERROR_SDO_ABORT, 255u},
-    {"Data cannot be transferred/saved to the application due to local control.", UINT32_C(0x08000021), UINT32_C(0x08000021), DRIVESPEC_ERROR_SDO_ABORT, 255u},
-    {"Data cannot be transferred/saved to the application due to current device state.", UINT32_C(0x08000022), UINT32_C(0x08000022), DRIVESPEC_ERROR_SDO_ABORT, 255u},
+/** Texts of errors; the records hold where each begins. */
+static const struct servo931_error_texts {
+    char text_0[1u];
+    char text_1[9u];
+    char text_2[34u];
+    char text_3[36u];
+    char text_4[39u];
+    char text_5[46u];
+    char text_6[35u];
+    char text_7[71u];
+    char text_8[69u];
+    char text_9[67u];
+    char text_10[67u];
+    char text_11[24u];
+    char text_12[34u];
+    char text_13[27u];
+    char text_14[27u];
+    char text_15[53u];
+    char text_16[74u];
+    char text_17[81u];
+} servo931_error_texts = {
+    "",
+    "Error 46",
+    "Access to object is not supported",
+    "Attempt to read a write-only object",
+    "Attempt to write to a read-only object",
+    "Object does not exist in the object directory",
+    "Object cannot be mapped to the PDO",
+    "The number and length of objects to be mapped would exceed PDO length.",
+    "Data type does not match, length of service parameter does not match",
+    "Data type does not match, length of service parameter is too large",
+    "Data type does not match, length of service parameter is too small",
+    "Subindex does not exist",
+    "Value range of parameter exceeded",
+    "Parameter values too large",
+    "Parameter values too small",
+    "Data cannot be transferred/saved to the application.",
+    "Data cannot be transferred/saved to the application due to local control.",
+    "Data cannot be transferred/saved to the application due to current device state.",
 };
 
-/** Perfect hash of the single error numbers: seed by bucket, record by slot. */
-static const uint8_t servo931_error_seeds[] = {1u, 0u, 1u, 2u, 2u, 0u, 5u, 1u};
-static const uint8_t servo931_error_places[] = {16u, 0u, 0u, 0u, 10u, 0u, 14u, 2u, 0u, 0u, 12u, 9u, 0u, 0u, 7u, 5u, 3u, 0u, 0u, 15u, 0u, 6u, 1u, 0u, 11u, 0u, 4u, 13u, 0u, 8u, 0u, 0u};
+/** Text of a record of an error, NULL where there is none. */
+static inline const char *servo931_error_text(uint32_t text)
+{
+    return (text != 0u) ? (const char *)&servo931_error_texts + text : NULL;
+}
+
+/** Error numbers, by kind and number. */
+static const drivespec_error servo931_errors[SERVO931_ERROR_COUNT] = {
+    {1u, UINT32_C(0x00008120), UINT32_C(0x00008120), DRIVESPEC_ERROR_EMERGENCY, 255u},
+    {10u, UINT32_C(0x06010000), UINT32_C(0x06010000), DRIVESPEC_ERROR_SDO_ABORT, 255u},
+    {44u, UINT32_C(0x06010001), UINT32_C(0x06010001), DRIVESPEC_ERROR_SDO_ABORT, 255u},
+    {80u, UINT32_C(0x06010002), UINT32_C(0x06010002), DRIVESPEC_ERROR_SDO_ABORT, 255u},
+    {119u, UINT32_C(0x06020000), UINT32_C(0x06020000), DRIVESPEC_ERROR_SDO_ABORT, 255u},
+    {165u, UINT32_C(0x06040041), UINT32_C(0x06040041), DRIVESPEC_ERROR_SDO_ABORT, 255u},
+    {200u, UINT32_C(0x06040042), UINT32_C(0x06040042), DRIVESPEC_ERROR_SDO_ABORT, 255u},
+    {271u, UINT32_C(0x06070010), UINT32_C(0x06070010), DRIVESPEC_ERROR_SDO_ABORT, 255u},
+    {340u, UINT32_C(0x06070012), UINT32_C(0x06070012), DRIVESPEC_ERROR_SDO_ABORT, 255u},
+    {407u, UINT32_C(0x06070013), UINT32_C(0x06070013), DRIVESPEC_ERROR_SDO_ABORT, 255u},
+    {474u, UINT32_C(0x06090011), UINT32_C(0x06090011), DRIVESPEC_ERROR_SDO_ABORT, 255u},
+    {498u, UINT32_C(0x06090030), UINT32_C(0x06090030), DRIVESPEC_ERROR_SDO_ABORT, 255u},
+    {532u, UINT32_C(0x06090031), UINT32_C(0x06090031), DRIVESPEC_ERROR_SDO_ABORT, 255u},
+    {559u, UINT32_C(0x06090032), UINT32_C(0x06090032), DRIVESPEC_ERROR_SDO_ABORT, 255u},
+    {586u, UINT32_C(0x08000020), UINT32_C(0x08000020), DRIVESPEC_ERROR_SDO_ABORT, 255u},
+    {639u, UINT32_C(0x08000021), UINT32_C(0x08000021), DRIVESPEC_ERROR_SDO_ABORT, 255u},
+    {713u, UINT32_C(0x08000022), UINT32_C(0x08000022), DRIVESPEC_ERROR_SDO_ABORT, 255u},
+};
+
+/** Records of the numbers of DRIVESPEC_ERROR_EMERGENCY. */
+static const uint8_t servo931_emergency_error_places[] = {0u};
+
+/** Perfect hash of the numbers of DRIVESPEC_ERROR_SDO_ABORT: records by slot. */
+static const uint8_t servo931_sdo_abort_error_places[] = {11u, 1u, 1u, 2u, 12u, 1u, 1u, 3u, 1u, 13u, 5u, 1u, 7u, 1u, 6u, 14u, 1u, 1u, 10u, 15u, 1u, 8u, 1u, 1u, 16u, 1u, 9u, 1u, 1u, 1u, 1u, 4u};
 
 /** Record of an error number, NULL where there is none. */
 static inline const drivespec_error *servo931_find_error(uint8_t kind, uint32_t number)
 {
-    const drivespec_error *const errors = servo931_errors;
+    const drivespec_error *found = NULL;
+    uint32_t hash = number;
 
-    const uint32_t key = number ^ (uint32_t)(kind * UINT32_C(0x9E3779B1));
-    const uint32_t bucket = (uint32_t)(key * UINT32_C(0x9E3779B1)) >> 29u;
-    const uint32_t factor = UINT32_C(0xFFE6CC61) + 2u * (uint32_t)servo931_error_seeds[bucket];
-    const uint32_t slot = (uint32_t)((key ^ (key >> 15)) * factor) >> 27u;
-    const drivespec_error *const single = &errors[servo931_error_places[slot]];
-    if ((single->first == number) && (single->kind == kind)) {
-        return single;
+    switch (kind) {
+    case DRIVESPEC_ERROR_EMERGENCY:
+        hash = number - UINT32_C(0x00008120);
+        return (hash <= UINT32_C(0)) ? &servo931_errors[servo931_emergency_error_places[hash]] : NULL;
+    case DRIVESPEC_ERROR_SDO_ABORT:
+        hash = (uint32_t)(hash * UINT32_C(0x248E067D)) >> 27u;
+        found = &servo931_errors[servo931_sdo_abort_error_places[hash]];
+        break;
+    default:
+        return NULL;
     }
-    return NULL;
+    return ((number - found->first) <= (found->last - found->first)) ? found : NULL;
 }
 
 /** Bit rates supported, in kbit/s. */

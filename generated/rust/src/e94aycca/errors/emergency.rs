@@ -186,7 +186,13 @@ const HELP: &[Help] = &[
     Help { causes: &[], remedies: &[] },
 ];
 
-const FIRSTS: [u32; ENTRIES.len()] = ErrorTable::firsts(ENTRIES);
+#[rustfmt::skip]
+const PLACES: &[u16] = &[
+    0, 0, 5, 2, 4, 6, 0, 0, 0, 0, 0, 1, 7, 8, 0, 3,
+];
+
+const INDEX: ErrorIndex =
+    ErrorIndex { first: None, factor: 0x36FB_EEE7, shift: 28, seed_shift: 0, seeds: &[], places: PLACES, long: &[] };
 
 /// All errors of the kind, found by number.
-pub const TABLE: ErrorTable = ErrorTable::new("emergency", 0xFFFF_FFFF, ENTRIES, &FIRSTS, HELP);
+pub const TABLE: ErrorTable = ErrorTable::new("emergency", 0xFFFF_FFFF, ENTRIES, HELP, INDEX);

@@ -463,7 +463,16 @@ const HELP: &[Help] = &[
     Help { causes: &[], remedies: &[] },
 ];
 
-const FIRSTS: [u32; ENTRIES.len()] = ErrorTable::firsts(ENTRIES);
+#[rustfmt::skip]
+const PLACES: &[u16] = &[
+    24, 0, 0, 0, 7, 8, 9, 0, 10, 0, 0, 0, 0, 0, 0, 0, 1, 2, 3, 4, 5, 6, 0, 0, 15, 0, 0, 0, 0, 0, 0, 0, 25, 26, 27, 28,
+    0, 0, 0, 0, 0, 0, 0, 0, 16, 0, 17, 18, 0, 0, 0, 0, 0, 19, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0,
+    0, 0, 0, 0, 0, 0, 0, 0, 11, 12, 13, 20, 21, 22, 14, 0, 0, 23, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0,
+    0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0,
+];
+
+const INDEX: ErrorIndex =
+    ErrorIndex { first: None, factor: 0x0200_0800, shift: 25, seed_shift: 0, seeds: &[], places: PLACES, long: &[] };
 
 /// All errors of the kind, found by number.
-pub const TABLE: ErrorTable = ErrorTable::new("sdo_abort", 0xFFFF_FFFF, ENTRIES, &FIRSTS, HELP);
+pub const TABLE: ErrorTable = ErrorTable::new("sdo_abort", 0xFFFF_FFFF, ENTRIES, HELP, INDEX);

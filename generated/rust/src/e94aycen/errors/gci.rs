@@ -594,7 +594,14 @@ const HELP: &[Help] = &[
     Help { causes: &[], remedies: &[] },
 ];
 
-const FIRSTS: [u32; ENTRIES.len()] = ErrorTable::firsts(ENTRIES);
+#[rustfmt::skip]
+const PLACES: &[u16] = &[
+    0, 26, 0, 6, 31, 13, 0, 0, 11, 0, 19, 0, 0, 24, 4, 0, 29, 0, 0, 0, 0, 0, 17, 9, 22, 0, 2, 27, 0, 7, 32, 0, 0, 15, 0,
+    1, 20, 0, 0, 25, 10, 5, 30, 0, 0, 0, 0, 0, 18, 14, 0, 23, 3, 0, 28, 12, 33, 0, 0, 16, 0, 8, 21, 0,
+];
+
+const INDEX: ErrorIndex =
+    ErrorIndex { first: None, factor: 0x68B4_D115, shift: 26, seed_shift: 0, seeds: &[], places: PLACES, long: &[] };
 
 /// All errors of the kind, found by number.
-pub const TABLE: ErrorTable = ErrorTable::new("gci", 0xFFFF_FFFF, ENTRIES, &FIRSTS, HELP);
+pub const TABLE: ErrorTable = ErrorTable::new("gci", 0xFFFF_FFFF, ENTRIES, HELP, INDEX);

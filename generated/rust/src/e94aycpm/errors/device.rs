@@ -422,7 +422,13 @@ const HELP: &[Help] = &[
     },
 ];
 
-const FIRSTS: [u32; ENTRIES.len()] = ErrorTable::firsts(ENTRIES);
+#[rustfmt::skip]
+const PLACES: &[u16] = &[
+    8, 0, 0, 0, 9, 12, 0, 2, 0, 0, 0, 0, 4, 10, 13, 6, 3, 0, 0, 0, 0, 5, 0, 0, 7, 0, 0, 0, 11, 0, 1, 0,
+];
+
+const INDEX: ErrorIndex =
+    ErrorIndex { first: None, factor: 0x489E_4AE1, shift: 27, seed_shift: 0, seeds: &[], places: PLACES, long: &[] };
 
 /// All errors of the kind, found by number.
-pub const TABLE: ErrorTable = ErrorTable::new("device", 0x03FF_FFFF, ENTRIES, &FIRSTS, HELP);
+pub const TABLE: ErrorTable = ErrorTable::new("device", 0x03FF_FFFF, ENTRIES, HELP, INDEX);

@@ -312,7 +312,13 @@ const HELP: &[Help] = &[
     Help { causes: &[], remedies: &[] },
 ];
 
-const FIRSTS: [u32; ENTRIES.len()] = ErrorTable::firsts(ENTRIES);
+#[rustfmt::skip]
+const PLACES: &[u16] = &[
+    0, 7, 1, 0, 11, 0, 0, 2, 0, 0, 0, 0, 8, 3, 0, 0, 0, 6, 12, 0, 0, 0, 0, 0, 0, 9, 5, 0, 0, 4, 0, 10,
+];
+
+const INDEX: ErrorIndex =
+    ErrorIndex { first: None, factor: 0x2C15_E5F1, shift: 27, seed_shift: 0, seeds: &[], places: PLACES, long: &[] };
 
 /// All errors of the kind, found by number.
-pub const TABLE: ErrorTable = ErrorTable::new("dpv0", 0xFFFF_FFFF, ENTRIES, &FIRSTS, HELP);
+pub const TABLE: ErrorTable = ErrorTable::new("dpv0", 0xFFFF_FFFF, ENTRIES, HELP, INDEX);

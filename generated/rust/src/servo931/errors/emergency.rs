@@ -34,7 +34,20 @@ const HELP: &[Help] = &[Help {
     remedies: &[],
 }];
 
-const FIRSTS: [u32; ENTRIES.len()] = ErrorTable::firsts(ENTRIES);
+#[rustfmt::skip]
+const PLACES: &[u16] = &[
+    0,
+];
+
+const INDEX: ErrorIndex = ErrorIndex {
+    first: Some(0x0000_8120),
+    factor: 0x0000_0000,
+    shift: 0,
+    seed_shift: 0,
+    seeds: &[],
+    places: PLACES,
+    long: &[],
+};
 
 /// All errors of the kind, found by number.
-pub const TABLE: ErrorTable = ErrorTable::new("emergency", 0xFFFF_FFFF, ENTRIES, &FIRSTS, HELP);
+pub const TABLE: ErrorTable = ErrorTable::new("emergency", 0xFFFF_FFFF, ENTRIES, HELP, INDEX);

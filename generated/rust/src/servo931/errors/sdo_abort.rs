@@ -252,7 +252,13 @@ const HELP: &[Help] = &[
     Help { causes: &[], remedies: &[] },
 ];
 
-const FIRSTS: [u32; ENTRIES.len()] = ErrorTable::firsts(ENTRIES);
+#[rustfmt::skip]
+const PLACES: &[u16] = &[
+    10, 0, 0, 1, 11, 0, 0, 2, 0, 12, 4, 0, 6, 0, 5, 13, 0, 0, 9, 14, 0, 7, 0, 0, 15, 0, 8, 0, 0, 0, 0, 3,
+];
+
+const INDEX: ErrorIndex =
+    ErrorIndex { first: None, factor: 0x248E_067D, shift: 27, seed_shift: 0, seeds: &[], places: PLACES, long: &[] };
 
 /// All errors of the kind, found by number.
-pub const TABLE: ErrorTable = ErrorTable::new("sdo_abort", 0xFFFF_FFFF, ENTRIES, &FIRSTS, HELP);
+pub const TABLE: ErrorTable = ErrorTable::new("sdo_abort", 0xFFFF_FFFF, ENTRIES, HELP, INDEX);
