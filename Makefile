@@ -11,7 +11,7 @@ PIP := $(RUN) -m pip install --quiet --disable-pip-version-check
 BROWSER = { [ "$$(id -u)" = 0 ] && command -v apt-get >/dev/null && echo "make test: installing chromium" && apt-get update -qq && \
 	DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends chromium fonts-dejavu-core >/dev/null; }
 
-.PHONY: all site serve check test lint bench-libs fuzz census clean help
+.PHONY: always all site serve check test lint bench-libs fuzz census clean help
 all: .build/generated .build/site
 
 .build/generated: $(SOURCES) $(VENV)/ready
@@ -19,12 +19,16 @@ all: .build/generated .build/site
 	$(RUN) -m generator build
 	@touch $@
 
-site: .build/site ## build the reference in generated/html, for any static host or none
+site: .build/site ## build the reference in generated/html; URL=https://host/path/ adds a sitemap
 
-.build/site: $(SOURCES) $(VENV)/ready
+.build/site: $(SOURCES) $(VENV)/ready .build/url
 	@mkdir -p .build
-	$(RUN) -m generator site
+	$(RUN) -m generator site --url '$(URL)'
 	@touch $@
+
+.build/url: always
+	@mkdir -p .build
+	@echo '$(URL)' | cmp -s - $@ || echo '$(URL)' > $@
 
 serve: .build/site ## show the reference at http://localhost:8000
 	$(RUN) -m http.server --directory generated/html --bind 127.0.0.1 8000

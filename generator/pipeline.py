@@ -10,10 +10,9 @@ from generator.elaborate import elaborate
 from generator.emit import html, targets
 from generator.emit.base import EmitError
 from generator.model import Model
+from generator.offer import SUMS, offer, sums
 from generator.spec import load
-
-_OFFERED = ("eds", "xdd", "gsd", "json")
-"""Targets of which the site offers every file by itself."""
+from generator.write import digest
 
 
 def compile_model(folder: Path, label: str) -> Model:
@@ -47,17 +46,19 @@ def render(model: Model) -> dict[str, bytes]:
     return files
 
 
-def render_site(model: Model) -> dict[str, bytes]:
-    """The reference as a folder to be published: its pages, and below files/ the artifacts that they offer.
+def render_site(model: Model, url: str = "") -> dict[str, bytes]:
+    """The reference as a folder to be published: its pages, and below files/ what they offer.
+
+    With ``url``, the address that the folder will have (ended by "/"), pages name theirs and there is a sitemap.
 
     Raises:
         DiagnosticsError: A target or the reference cannot express a fact.
     """
-    artifacts = render(model)
+    files = offer(model.version, render(model))
+    offered = {path: html.Stored(len(data), digest(data)) for path, data in files.items()}
     with reported():
-        pages = {path: output.data() for path, output in html.render(model).items()}
-    offered = {f"files/{path}": data for path, data in artifacts.items() if path.split("/")[0] in _OFFERED}
-    return {**pages, **offered}
+        pages = {path: output.data() for path, output in html.render(model, offered, url).items()}
+    return {**pages, **{f"{html.FOLDER}/{path}": data for path, data in {**files, SUMS: sums(files)}.items()}}
 
 
 @contextmanager
