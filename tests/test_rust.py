@@ -59,7 +59,7 @@ def files(model: Model) -> dict[str, str]:
 
 @pytest.fixture(scope="module")
 def crate(cargo: Cargo, files: dict[str, str]) -> Path:
-    return cargo.place("crate", files)
+    return cargo.locked("crate", files)
 
 
 @pytest.fixture(scope="module")
@@ -70,7 +70,7 @@ def edge(model: Model) -> Model:
 
 @pytest.fixture(scope="module")
 def edge_crate(cargo: Cargo, edge: Model) -> Path:
-    return cargo.place("edge", texts(TARGET.render(edge)))
+    return cargo.locked("edge", texts(TARGET.render(edge)))
 
 
 # What the dump has to print, in its order.
@@ -559,7 +559,7 @@ def test_edge_cases_are_formatted(cargo: Cargo, edge_crate: Path) -> None:
 
 
 def test_a_model_without_devices_builds(cargo: Cargo, model: Model) -> None:
-    empty = cargo.place("empty", texts(TARGET.render(replace(model, devices=(), drives=()))))
+    empty = cargo.locked("empty", texts(TARGET.render(replace(model, devices=(), drives=()))))
     cargo.succeed(empty, "check", "--offline")
 
 

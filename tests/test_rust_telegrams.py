@@ -243,7 +243,7 @@ fn main() {
 @pytest.mark.parametrize("kind", ["real", "edge"])
 def test_agrees_with_the_reference(cargo: Cargo, model: Model, edge: Model, kind: str) -> None:
     chosen = model if kind == "real" else edge
-    crate = cargo.place("crate" if kind == "real" else "edge-telegrams", texts(TARGET.render(chosen)))
+    crate = cargo.locked("crate" if kind == "real" else "edge-telegrams", texts(TARGET.render(chosen)))
     folder = cargo.place(
         f"driver-{kind}",
         {"Cargo.toml": manifest(f"driver-{kind}", crate), "src/main.rs": driver(chosen.devices)},
@@ -268,7 +268,7 @@ def test_agrees_with_the_reference(cargo: Cargo, model: Model, edge: Model, kind
 
 def test_worked_telegrams_and_random_bytes(cargo: Cargo, model: Model) -> None:
     """The crate's own tests: one for each worked telegram, one for each layout."""
-    crate = cargo.place("crate", texts(TARGET.render(model)))
+    crate = cargo.locked("crate", texts(TARGET.render(model)))
     printed = cargo.succeed(crate, "test", "--offline", "--tests")
     passed = set(re.findall(r"^test (\S+) \.\.\. ok$", printed, re.MULTILINE))
     for device in model.devices:
@@ -332,7 +332,7 @@ PROBES = {
 
 
 def test_refuses_contradictory_values(cargo: Cargo, edge: Model) -> None:
-    crate = cargo.place("edge-telegrams", texts(TARGET.render(edge)))
+    crate = cargo.locked("edge-telegrams", texts(TARGET.render(edge)))
     probes = {f"({value}).encode(&mut [0; 64])": result for value, result in ENCODING.items()} | PROBES
     assert cargo.probe("refusals", crate, ["codec::*", "type_::telegrams::*"], list(probes)) == probes
 

@@ -19,7 +19,7 @@ from generator.emit.rust.views import DataTypeFigures, Module, Record, TypeEnum,
 from generator.model import DataType, Light, Model, Origin
 from generator.naming import Scope, safe, snake
 
-_OWN_MODULES = ("cob_ids", "codec", "default", "drives", "macros", "std", "types")
+_OWN_MODULES = ("cob_ids", "codec", "default", "defmt", "drives", "formats", "macros", "serde", "std", "types")
 """Modules and features that are no devices."""
 _ORIGINS = {
     Origin.MANUAL: "Printed in the manual cited.",
@@ -102,6 +102,7 @@ def _crate_files(
         ),
         "src/cob_ids.rs": _cob_ids(model, head),
         "src/codec.rs": fill("rust/codec.rs.j2", notice=head),
+        "src/formats.rs": fill("rust/formats.rs.j2", notice=head),
         "src/macros.rs": fill("rust/macros.rs.j2", notice=head),
         "src/types.rs": _types(head),
         "src/drives.rs": fill("rust/drives.rs.j2", notice=head, drives=sorted(map(drive_module, model.drives))),
