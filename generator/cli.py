@@ -1,4 +1,4 @@
-"""Command line: ``python -m generator build | site | check | census | dcf | explain``."""
+"""Command line: ``python -m generator build | site | check | census | dcf | pin | explain``."""
 
 import argparse
 import json
@@ -43,6 +43,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return _build(options.spec, options.out, options.format, url)
     if options.command == "dcf":
         return _dcf(options)
+    if options.command == "pin":
+        return _pin(options.spec, options.format)
     return _report(options.spec, options.format, census=options.command == "census")
 
 
@@ -102,6 +104,9 @@ def _parser() -> argparse.ArgumentParser:
         help="value of a code or object: C13351=2, C13320/1=0x185, I-1017=100; may be repeated",
     )
     dcf.add_argument("--out", type=Path, default=Path(), help="folder of the two files (default: the working folder)")
+    commands.add_parser(
+        "pin", parents=[common], help="write the public names to spec/names.yaml, for the next versions to keep"
+    )
     explain = commands.add_parser("explain", help="say what a rule demands")
     explain.add_argument("rule", nargs="?", help="id of the rule, as in error[RULE]; without it all rules are listed")
     return parser
@@ -217,6 +222,20 @@ def _dcf(options: argparse.Namespace) -> int:
         return 1
     for name in contents:
         print(options.out / name)
+    return 0
+
+
+def _pin(spec: Path, style: str) -> int:
+    from generator.diagnostics import DiagnosticsError
+    from generator.emit.pins import text
+    from generator.pipeline import compile_model
+
+    try:
+        content = text(compile_model(spec, _label(spec)))
+    except DiagnosticsError as error:
+        return _show(error, style)
+    save(spec, {"names.yaml": content.encode("ascii")})
+    print(spec / "names.yaml")
     return 0
 
 

@@ -9,6 +9,7 @@ from generator.diagnostics import Diagnostic, DiagnosticsError, Problems
 from generator.elaborate import elaborate
 from generator.emit import html, targets
 from generator.emit.base import EmitError
+from generator.emit.pins import broken
 from generator.model import Model
 from generator.offer import SUMS, offer, sums
 from generator.spec import load
@@ -31,10 +32,11 @@ def render(model: Model) -> dict[str, bytes]:
     """Every artifact of every target, by path below generated/.
 
     Raises:
-        DiagnosticsError: A target cannot express a fact; one problem of each target that failed.
+        DiagnosticsError: A target cannot express a fact, one problem of each target that failed; or names of the last
+            release are gone.
     """
     files: dict[str, bytes] = {}
-    problems: list[Diagnostic] = []
+    problems = [_diagnostic(error) for error in broken(model)]
     for target in targets():
         try:
             for path, output in target.render(model).items():
