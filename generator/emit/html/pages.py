@@ -7,9 +7,11 @@ from functools import partial
 from generator.emit.html.blocks import Entry, Fact, Group, Row, Table
 from generator.emit.html.codes import code_entry, code_group
 from generator.emit.html.coverage import Coverage, coverage, edition, listed_sources
+from generator.emit.html.dip import Board, boards
 from generator.emit.html.drive import DriveSection, drive_section
 from generator.emit.html.errors import error_entry, error_group
 from generator.emit.html.files import FileSection, file_names, file_sections, has_files
+from generator.emit.html.finder import Finder, finder
 from generator.emit.html.frame import Frame, NavItem, coverage_item, device_frame, site_frame
 from generator.emit.html.ledger import ledger_groups
 from generator.emit.html.links import Links
@@ -43,6 +45,8 @@ _LEADS = {
     "telegrams": "Offsets count bytes from 0; bit 0 is the least significant.",
     "errata": "What is printed wrong, what is used instead, why, and how sure that is.",
 }
+_SCRIPTS = {"leds": ("panel.js",), "switches": ("panel.js",)}
+"""Scripts of the instruments of a part."""
 _WITH_PAGES = ("codes", "objects", "errors")
 """Parts whose entries have a page of their own each."""
 
@@ -58,11 +62,16 @@ class Page:
 
 @dataclass(frozen=True, slots=True)
 class PartView:
-    """Groups of entries; ``lead`` is "" where the title says enough.  ``blinks``: it has drawings that move."""
+    """Groups of entries; ``lead`` is "" where the title says enough.
+
+    ``blinks``: it has drawings that move.  ``boards`` and ``finder``: instruments that stand above the groups.
+    """
 
     lead: str
     groups: tuple[Group, ...]
     blinks: bool
+    boards: tuple[Board, ...] = ()
+    finder: Finder | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -168,9 +177,15 @@ def _device_pages(model: Model, device: Device) -> Iterator[Page]:
         title = _TITLES[part]
         names = ", ".join(dict.fromkeys(group.title for group in groups))
         frame = device_frame(
-            model, device, nav, part=part, title=title, description=f"{title} of the {device.title}: {names}."
+            model,
+            device,
+            nav,
+            part=part,
+            title=title,
+            description=f"{title} of the {device.title}: {names}.",
+            scripts=_SCRIPTS.get(part, ()),
         )
-        yield Page(frame, "part", PartView(_LEADS.get(part, ""), groups, blinks=part == "leds"))
+        yield Page(frame, "part", _part_view(links.on(frame.path), part, groups))
         if part in _WITH_PAGES:
             yield from _entry_pages(model, links, nav, part)
     if device.drive:
@@ -182,6 +197,17 @@ def _device_pages(model: Model, device: Device) -> Iterator[Page]:
         description = f"EDS, XDD and GSD files of the {device.title}: contents, assumptions, corrections and import."
         frame = device_frame(model, device, nav, part="files", title=_TITLES["files"], description=description)
         yield Page(frame, "files", FilesView(file_sections(links.on(frame.path))))
+
+
+def _part_view(links: Links, part: str, groups: tuple[Group, ...]) -> PartView:
+    device = links.device
+    return PartView(
+        _LEADS.get(part, ""),
+        groups,
+        blinks=part == "leds",
+        boards=boards(links, device.switches) if part == "switches" else (),
+        finder=finder(device.indicators) if part == "leds" else None,
+    )
 
 
 def _entry_pages(model: Model, links: Links, nav: Sequence[NavItem], part: str) -> Iterator[Page]:
