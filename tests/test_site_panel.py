@@ -363,6 +363,11 @@ def test_fits_a_narrow_screen_and_a_finger(browser: Browser, site: Path, model: 
             if not (device.switches if part == "switches" else device.indicators):
                 continue
             page = visitor.open(f"{device.id}-{part}.html")
+            if part == "leds":
+                first = device.indicators[-1].rows[0]
+                seen = zip(device.indicators[-1].leds, first.patterns, strict=True)
+                page.evaluate(CHOOSE, [[(led.label, words(observed(it)[0])) for led, it in seen]])
+                assert page.locator(".answers li:visible").all_text_contents() == [f"{first.state}: {first.meaning}"]
             assert page.evaluate("document.documentElement.scrollWidth") == 320
             targets = page.locator("[role=switch], .setting :is(input, select, button), .front label, .found button")
             boxes = [it.bounding_box() for it in targets.all()]

@@ -117,7 +117,9 @@
     const rows = Object.entries(JSON.parse(section.querySelector("script").textContent)).map(([id, leds]) => ({
       leds,
       element: document.getElementById(id),
+      state: document.querySelector(`.lamps a[href="#${CSS.escape(id)}"]`),
     }));
+    const answers = section.querySelector(".answers");
     const fields = [...section.querySelectorAll("fieldset")];
     const status = section.querySelector("[role=status]");
     const overview = section.parentElement.querySelector(".overview")?.closest(".scroll");
@@ -132,12 +134,17 @@
       const sights = chosen();
       const all = sights.length === 0;
       const spoken = new Set();
+      answers.replaceChildren();
       let count = 0;
       for (const row of rows) {
         const asked = sights.filter((it) => id(it) in row.leds);
         const fits = all || (asked.length > 0 && asked.every((it) => row.leds[id(it)].includes(it.value)));
         row.element.hidden = !fits;
-        if (!fits) continue;
+        if (!fits || all) continue;
+        const answer = document.createElement("li");
+        const meaning = row.state.closest("td").nextElementSibling.cloneNode(true);
+        answer.append(row.state.cloneNode(true), ": ", ...meaning.childNodes);
+        answers.append(answer);
         count += 1;
         for (const it of asked) spoken.add(it);
       }
