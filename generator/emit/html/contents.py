@@ -71,7 +71,7 @@ def _lists(model: Model, device: Device) -> DeviceLists:
     page = page_of(device, PART)
     found = sections(model, device)
     kinds = tuple((Piece(it.title, f"{page}#{it.id}"), str(len(it.items))) for it in found)
-    return DeviceLists(device.title, page, kinds)
+    return DeviceLists(device.title, page if found else page_of(device), kinds)
 
 
 def _listed(thing: Thing) -> Listed:

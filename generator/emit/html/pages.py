@@ -210,9 +210,11 @@ def _device_pages(model: Model, links: Links, offered: Offered) -> Iterator[Page
     brief = f"{device.title} ({device.order_code}): codes, objects, errors, LEDs, switches and telegrams."
     frame = device_frame(model, device, nav, title=device.title, description=brief)
     yield Page(frame, "device", overview(links.on(page_of(device)), offered))
-    description = f"Every number and name of the {device.title} on one page."
-    frame = device_frame(model, device, nav, part=PART, title="All entries", description=description)
-    yield Page(frame, "everything", EverythingView(sections(model, device)))
+    everything = sections(model, device)
+    if everything:
+        description = f"Every number and name of the {device.title} on one page."
+        frame = device_frame(model, device, nav, part=PART, title="All entries", description=description)
+        yield Page(frame, "everything", EverythingView(everything))
     for part, groups in parts.items():
         title = _TITLES[part]
         names = ", ".join(dict.fromkeys(group.title for group in groups))

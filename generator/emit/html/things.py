@@ -223,10 +223,8 @@ def _cob_ids(links: Links, entries: Sequence[CobId]) -> Iterator[Thing]:
         held_in = [ref for ref in entry.objects if ref.index in known]
         if held_in:
             href = links.object(held_in[0]).href
-        elif table is not None:
-            href = links.href(named_id("table", table.id))
         else:
-            continue
+            href = links.href(named_id("table", table.id) if table else "device")
         text = hexadecimal(entry.base, _COB_ID_BITS)
         keys = [Key("b", entry.base)]
         if not entry.broadcast:
