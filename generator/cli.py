@@ -1,10 +1,11 @@
-"""Command line: ``python -m generator build | site | check | census | dcf | explain``."""
+"""Command line: ``python -m generator build | site | check | census | dcf | pin | explain``."""
 
 import argparse
 import json
 import sys
 from collections.abc import Sequence
 from pathlib import Path
+from urllib.parse import urlsplit
 
 from generator import VERSION
 from generator.write import digest, is_current, save, write
@@ -38,9 +39,12 @@ def main(arguments: Sequence[str] | None = None) -> int:
     if not options.spec.is_dir():
         parser.error(f"there is no folder {options.spec}")
     if options.command in ("build", "site"):
-        return _build(options.spec, options.out, options.format, site=options.command == "site")
+        url = options.url if options.command == "site" else None
+        return _build(options.spec, options.out, options.format, url)
     if options.command == "dcf":
         return _dcf(options)
+    if options.command == "pin":
+        return _pin(options.spec, options.format)
     return _report(options.spec, options.format, census=options.command == "census")
 
 
@@ -65,6 +69,13 @@ def _parser() -> argparse.ArgumentParser:
     )
     site.add_argument(
         "--out", type=Path, default=_ROOT / "generated" / "html", help="folder of the site (default: generated/html)"
+    )
+    site.add_argument(
+        "--url",
+        type=_address,
+        default="",
+        help="address that the folder will have, https://host/path/; adds sitemap.xml, which must name addresses in "
+        "full, and canonical links; without it there are none, and every link is relative in both cases",
     )
     commands.add_parser("check", parents=[common], help="check the spec and write nothing")
     commands.add_parser(
@@ -93,9 +104,22 @@ def _parser() -> argparse.ArgumentParser:
         help="value of a code or object: C13351=2, C13320/1=0x185, I-1017=100; may be repeated",
     )
     dcf.add_argument("--out", type=Path, default=Path(), help="folder of the two files (default: the working folder)")
+    commands.add_parser(
+        "pin", parents=[common], help="write the public names to spec/names.yaml, for the next versions to keep"
+    )
     explain = commands.add_parser("explain", help="say what a rule demands")
     explain.add_argument("rule", nargs="?", help="id of the rule, as in error[RULE]; without it all rules are listed")
     return parser
+
+
+def _address(text: str) -> str:
+    """Address of a folder on the web, with the slash at its end; "" for none."""
+    if not text:
+        return ""
+    parts = urlsplit(text)
+    if parts.scheme not in ("http", "https") or not parts.netloc or parts.query or parts.fragment:
+        raise argparse.ArgumentTypeError(f"'{text}' is no address like https://host/path/")
+    return text.rstrip("/") + "/"
 
 
 def _label(spec: Path) -> str:
@@ -106,11 +130,11 @@ def _label(spec: Path) -> str:
         return spec.as_posix()
 
 
-def _build(spec: Path, out: Path, style: str, *, site: bool) -> int:
+def _build(spec: Path, out: Path, style: str, url: str | None) -> int:
+    """Build the artifacts, or the site where there is a ``url``, which may be empty."""
     sources = _digests(spec)
-    state = digest(
-        json.dumps([VERSION, _digests(_ROOT / "generator"), _digests(_ROOT / "templates"), sources]).encode()
-    )
+    parts = [VERSION, _digests(_ROOT / "generator"), _digests(_ROOT / "templates"), sources, url]
+    state = digest(json.dumps(parts).encode())
     if _state(out) == state and is_current(out):
         print(f"{out.name}: up to date")
         return 0
@@ -118,7 +142,8 @@ def _build(spec: Path, out: Path, style: str, *, site: bool) -> int:
     from generator.pipeline import compile_model, render, render_site
 
     try:
-        files = (render_site if site else render)(compile_model(spec, _label(spec)))
+        model = compile_model(spec, _label(spec))
+        files = render(model) if url is None else render_site(model, url)
     except DiagnosticsError as error:
         return _show(error, style)
     changed = write(out, files, sources)
@@ -197,6 +222,20 @@ def _dcf(options: argparse.Namespace) -> int:
         return 1
     for name in contents:
         print(options.out / name)
+    return 0
+
+
+def _pin(spec: Path, style: str) -> int:
+    from generator.diagnostics import DiagnosticsError
+    from generator.emit.pins import text
+    from generator.pipeline import compile_model
+
+    try:
+        content = text(compile_model(spec, _label(spec)))
+    except DiagnosticsError as error:
+        return _show(error, style)
+    save(spec, {"names.yaml": content.encode("ascii")})
+    print(spec / "names.yaml")
     return 0
 
 

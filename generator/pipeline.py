@@ -9,11 +9,11 @@ from generator.diagnostics import Diagnostic, DiagnosticsError, Problems
 from generator.elaborate import elaborate
 from generator.emit import html, targets
 from generator.emit.base import EmitError
+from generator.emit.pins import broken
 from generator.model import Model
+from generator.offer import SUMS, offer, sums
 from generator.spec import load
-
-_OFFERED = ("eds", "xdd", "gsd", "json")
-"""Targets of which the site offers every file by itself."""
+from generator.write import digest
 
 
 def compile_model(folder: Path, label: str) -> Model:
@@ -32,10 +32,11 @@ def render(model: Model) -> dict[str, bytes]:
     """Every artifact of every target, by path below generated/.
 
     Raises:
-        DiagnosticsError: A target cannot express a fact; one problem of each target that failed.
+        DiagnosticsError: A target cannot express a fact, one problem of each target that failed; or names of the last
+            release are gone.
     """
     files: dict[str, bytes] = {}
-    problems: list[Diagnostic] = []
+    problems = [_diagnostic(error) for error in broken(model)]
     for target in targets():
         try:
             for path, output in target.render(model).items():
@@ -47,17 +48,19 @@ def render(model: Model) -> dict[str, bytes]:
     return files
 
 
-def render_site(model: Model) -> dict[str, bytes]:
-    """The reference as a folder to be published: its pages, and below files/ the artifacts that they offer.
+def render_site(model: Model, url: str = "") -> dict[str, bytes]:
+    """The reference as a folder to be published: its pages, and below files/ what they offer.
+
+    With ``url``, the address that the folder will have (ended by "/"), pages name theirs and there is a sitemap.
 
     Raises:
         DiagnosticsError: A target or the reference cannot express a fact.
     """
-    artifacts = render(model)
+    files = offer(model.version, render(model))
+    offered = {path: html.Stored(len(data), digest(data)) for path, data in files.items()}
     with reported():
-        pages = {path: output.data() for path, output in html.render(model).items()}
-    offered = {f"files/{path}": data for path, data in artifacts.items() if path.split("/")[0] in _OFFERED}
-    return {**pages, **offered}
+        pages = {path: output.data() for path, output in html.render(model, offered, url).items()}
+    return {**pages, **{f"{html.FOLDER}/{path}": data for path, data in {**files, SUMS: sums(files)}.items()}}
 
 
 @contextmanager

@@ -74,6 +74,7 @@ RULES: dict[str, str] = {
     "object-index": "Every object on a CANopen bus has an index of its own, inside the object dictionary.",
     "object-value": "Names, defaults and limits of an object can be expressed on the bus.",
     "name-collision": "No two facts get the same name in a generated file.",
+    "name-pinned": "The public names of the last release are there and stand for the same numbers.",
     "error-overlap": "An error number stands in one entry of its kind.",
     "telegram-field": "Every language can hold the numbers of a telegram and find its lengths.",
     "not-ascii": "Text for a target that is ASCII has ASCII characters.",

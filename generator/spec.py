@@ -29,6 +29,7 @@ class Spec:
     """Loaded files by kind and name."""
 
     release: SourceFile | None = None
+    names: SourceFile | None = None
     manuals: list[SourceFile] = field(default_factory=list)
     standards: list[SourceFile] = field(default_factory=list)
     drives: dict[str, dict[str, SourceFile]] = field(default_factory=dict)
@@ -74,6 +75,8 @@ def _kind(parts: tuple[str, ...]) -> str | None:
     match parts:
         case ("release.yaml",):
             return "release"
+        case ("names.yaml",):
+            return "names"
         case ("manuals", _):
             return "manual"
         case ("standards", _):
@@ -109,6 +112,8 @@ def _file(spec: Spec, parts: tuple[str, ...], file: SourceFile) -> None:
             spec.drives.setdefault(file.stem, {})[file.kind] = file
         case "devices":
             spec.devices.setdefault(file.stem, {})[file.kind] = file
+        case "names.yaml":
+            spec.names = file
         case _:
             spec.release = file
 

@@ -5,12 +5,15 @@ from pathlib import Path
 from shutil import which
 
 import pytest
+from hypothesis import HealthCheck, settings
 from playwright.sync_api import Browser, BrowserContext, sync_playwright
 from visitor import FLAGS, Visitor
 
 from generator.model import Model
 from generator.pipeline import compile_model, render, render_site
 from generator.write import write
+
+settings.register_profile("long", max_examples=5_000, deadline=None, suppress_health_check=list(HealthCheck))
 
 ROOT = Path(__file__).resolve().parent.parent
 

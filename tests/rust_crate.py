@@ -37,6 +37,7 @@ class Cargo:
 
     def __init__(self, root: Path) -> None:
         self._folder = root / ".build" / "rust" / WORKER
+        self._lock = (root / "tests" / "consumers" / "rust-features.lock").read_text(encoding="utf-8")
         self._environment = os.environ | {
             "CARGO_TARGET_DIR": str(root / ".build" / "cargo" / WORKER),
             "CARGO_TERM_COLOR": "never",
@@ -56,8 +57,15 @@ class Cargo:
                 file.unlink()
         return folder
 
+    def locked(self, name: str, files: Mapping[str, str]) -> Path:
+        """A folder as of ``place`` whose dependencies are pinned and at hand; those of features count as well."""
+        folder = self.place(name, {**files, "Cargo.lock": self._lock})
+        if self.run(folder, "fetch", "--offline").returncode != 0:
+            self.succeed(folder, "fetch")
+        return folder
+
     def run(self, folder: Path, *arguments: str, given: str | None = None) -> subprocess.CompletedProcess[str]:
-        """Cargo without network; ``given`` is its standard input."""
+        """Cargo; ``given`` is its standard input."""
         cargo = shutil.which("cargo")
         if cargo is None:
             pytest.fail(

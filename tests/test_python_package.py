@@ -58,7 +58,7 @@ from generator.model import (
     SwitchRow,
     Table,
 )
-from generator.naming import pascal
+from generator.naming import pascal, safe
 
 PACKAGE = "drivespec_devices"
 VERSIONS = ("3.9", "3.10", "3.11", "3.12", "3.13", "3.14")
@@ -891,6 +891,8 @@ def stub_docs(distribution: Path, device: Device) -> dict[str, str]:
     docs: dict[str, str] = {}
     for statement, after in zip(body, [*body[1:], None], strict=True):
         if isinstance(statement, ast.AnnAssign) and isinstance(statement.target, ast.Name):
+            if statement.target.id == "__all__":
+                continue
             assert isinstance(after, ast.Expr) and isinstance(after.value, ast.Constant)
             docs[statement.target.id] = " ".join(str(after.value.value).split())
         elif isinstance(statement, ast.ImportFrom) and (statement.module or "").endswith("_telegrams"):
@@ -943,7 +945,7 @@ def stub_all(distribution: Path, device: Device) -> list[str]:
     (value,) = [
         statement.value
         for statement in tree.body
-        if isinstance(statement, ast.Assign) and ast.unparse(statement.targets[0]) == "__all__"
+        if isinstance(statement, ast.AnnAssign) and ast.unparse(statement.target) == "__all__" and statement.value
     ]
     return list(ast.literal_eval(value))
 
@@ -974,33 +976,38 @@ def test_stubs_match_the_modules(distribution: Path) -> None:
     assert done.returncode == 0, done.stdout + done.stderr
 
 
-def test_strict_type_check(distribution: Path, model: Model, tmp_path: Path) -> None:
-    """The package passes ``mypy --strict``; a consumer gets precise types, and its mistakes are found."""
+@pytest.fixture(scope="module")
+def programs(distribution: Path, model: Model, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A consumer that says which types it expects, of enums and records built at run time too, and one of mistakes."""
     device = next(d for d in model.devices if any(c.options and not c.subcodes for c in d.codes))
     code = next(c for c in device.codes if c.options and not c.subcodes)
     flags = next(c for c in device.codes if c.bits)
     enum = f"d.{enum_name(device, code.number, distribution, 'selection_name')}"
     flag = f"d.{enum_name(device, flags.number, distribution, 'flags_name')}"
+    member = safe(names.option_names(code.options)[0], "python").upper()
     consumer = f"""
-        from typing import Union
         from typing_extensions import Literal, assert_type
-        from {PACKAGE} import Code, Flags, Selection, {device.id} as d, load
+        from {PACKAGE} import Code, Device, Error, Flags, Selection, {device.id} as d
 
         code = d.code(d.{names.code_name(code).upper()}, slot=None)
         assert_type(code, Code)
         assert_type(code.index, int)
-        assert_type({enum}({code.options[0].value}), {enum})
+        assert_type(d.DEVICE, Device)
+        assert_type(d.ERRORS[0], Error)
+        assert_type({enum}.{member}, Literal[{enum}.{member}])
         assert_type({enum}({code.options[0].value}).label, str)
         assert_type({flag}.of(3), {flag})
         assert_type({flag}.of(3) | {flag}.of(4), {flag})
+        selection: type[Selection] = {enum}
+        bits: type[Flags] = {flag}
         number: int = {enum}.of(1)
-        for member in {enum}:
-            assert_type(member.value, int)
+        for entry in {enum}:
+            assert_type(entry, {enum})
+            value: int = entry.value
         constant: Literal[{code.number}] = d.{names.code_name(code).upper()}
         if code.range is not None:
             inside: bool = 5 in code.range
-        names = [c.name for c in d.CODES]
-        assert_type(names, list[str])
+        assert_type([c.name for c in d.CODES], list[str])
     """
     mistakes = f"""
         from {PACKAGE} import {device.id} as d
@@ -1008,16 +1015,48 @@ def test_strict_type_check(distribution: Path, model: Model, tmp_path: Path) -> 
         d.code(1).number = 2
         d.code(1).nonsense
         d.NONSENSE
+        {enum}.NONSENSE
         text: str = {enum}.of(1)
     """
-    (tmp_path / "consumer.py").write_text(textwrap.dedent(consumer), encoding="utf-8")
-    (tmp_path / "mistakes.py").write_text(textwrap.dedent(mistakes), encoding="utf-8")
+    folder = tmp_path_factory.mktemp("programs")
+    (folder / "consumer.py").write_text(textwrap.dedent(consumer), encoding="utf-8")
+    (folder / "mistakes.py").write_text(textwrap.dedent(mistakes), encoding="utf-8")
+    return folder
+
+
+def test_mypy(distribution: Path, programs: Path, tmp_path: Path) -> None:
+    """The package passes ``mypy --strict``; a consumer gets precise types, and its mistakes are found."""
     mypy = (sys.executable, "-m", "mypy", "--strict", "--cache-dir", tmp_path / "cache")
-    done = run(*mypy, "-p", PACKAGE, "-m", "consumer", cwd=tmp_path, path=distribution)
+    done = run(*mypy, "-p", PACKAGE, "-m", "consumer", cwd=programs, path=distribution)
     assert done.returncode == 0, done.stdout + done.stderr
-    done = run(*mypy, "mistakes.py", cwd=tmp_path, path=distribution)
+    done = run(*mypy, "mistakes.py", cwd=programs, path=distribution)
     codes = [line.rsplit("[", 1)[1].rstrip("]") for line in done.stdout.splitlines() if ": error:" in line]
-    assert codes == ["arg-type", "misc", "attr-defined", "attr-defined", "assignment"], done.stdout
+    assert codes == ["arg-type", "misc", "attr-defined", "attr-defined", "attr-defined", "assignment"], done.stdout
+
+
+def test_pyright(distribution: Path, programs: Path, tmp_path: Path) -> None:
+    """The same in the strict mode of pyright, which is what editors complete names with."""
+    shutil.copytree(distribution / PACKAGE, tmp_path / PACKAGE)
+    for program in programs.iterdir():
+        shutil.copy(program, tmp_path)
+
+    def check(*names: str) -> list[str]:
+        settings = {"include": names, "typeCheckingMode": "strict", "pythonVersion": VERSIONS[0]}
+        (tmp_path / "pyrightconfig.json").write_text(json.dumps(settings), encoding="utf-8")
+        done = run(sys.executable, "-m", "pyright", "--outputjson", "--pythonpath", sys.executable, cwd=tmp_path)
+        found = json.loads(done.stdout)
+        assert found["summary"]["filesAnalyzed"] >= len(names), done.stderr
+        return [f"{entry['rule']}: {entry['message']}" for entry in found["generalDiagnostics"]]
+
+    assert check(PACKAGE, "consumer.py") == []
+    rules = [message.split(":")[0] for message in check("mistakes.py")]
+    wanted = ["reportArgumentType", "reportAttributeAccessIssue", "reportAttributeAccessIssue"]
+    assert [rule for rule in rules if rule in {*wanted, "reportAssignmentType"}] == [
+        *wanted,
+        "reportAttributeAccessIssue",
+        "reportAttributeAccessIssue",
+        "reportAssignmentType",
+    ]
 
 
 def enum_name(device: Device, number: int, distribution: Path, key: str) -> str:

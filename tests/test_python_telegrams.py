@@ -314,16 +314,27 @@ def test_telegrams_compare_and_show_their_values(package: Any, model: Model) -> 
     assert issubclass(package.DecodeError, package.TelegramError) and issubclass(package.TelegramError, ValueError)
 
 
+@pytest.mark.hypothesis
 @pytest.mark.parametrize("device_id", DEVICES)
 def test_any_bytes(package: Any, model: Model, device_id: str) -> None:
     """Whatever arrives is either read and written back as it was, or refused with a decode error."""
-    classes = [generated_class(package, device_id, layout) for layout in layouts_of(model, device_id)]
+    samples = [
+        (generated_class(package, device_id, layout), data)
+        for layout in layouts_of(model, device_id)
+        for data in [message for message in messages(layout) if not isinstance(reference(layout, message), str)][:50]
+    ]
 
     @settings(
-        max_examples=1000, deadline=None, database=None, derandomize=True, suppress_health_check=list(HealthCheck)
+        max_examples=10 * settings().max_examples,
+        derandomize=settings.get_current_profile_name() != "long",
+        database=None,
+        deadline=None,
+        suppress_health_check=list(HealthCheck),
     )
-    @given(st.sampled_from(classes), st.binary(max_size=300))
-    def check(telegram_class: Any, data: bytes) -> None:
+    @given(st.sampled_from(samples), st.integers(0, 40), st.integers(0, 4), st.binary(max_size=300))
+    def check(sample: tuple[Any, bytes], start: int, length: int, inserted: bytes) -> None:
+        telegram_class, good = sample
+        data = good[:start] + inserted + good[start + length :]
         try:
             telegram = telegram_class.decode(data)
         except package.DecodeError:

@@ -23,7 +23,7 @@ def cargo(root: Path) -> Cargo:
 
 @pytest.fixture(scope="module")
 def crate(cargo: Cargo, model: Model) -> Path:
-    return cargo.place("crate", texts(TARGET.render(model)))
+    return cargo.locked("crate", texts(TARGET.render(model)))
 
 
 @pytest.fixture(scope="module")
@@ -172,7 +172,7 @@ def test_switches(cargo: Cargo, crate: Path, model: Model) -> None:
 
 
 def test_switches_of_the_edge_cases(cargo: Cargo, edge: Model) -> None:
-    crate = cargo.place("edge-arithmetic", texts(TARGET.render(edge)))
+    crate = cargo.locked("edge-arithmetic", texts(TARGET.render(edge)))
     check(cargo, "edge-switches", crate, switch_probes(edge.devices[0]))
 
 
@@ -251,7 +251,7 @@ def test_indicators_of_the_edge_cases(cargo: Cargo, edge: Model) -> None:
         (off,): None,
         (off, off, off): None,
     }
-    crate = cargo.place("edge-arithmetic", texts(TARGET.render(edge)))
+    crate = cargo.locked("edge-arithmetic", texts(TARGET.render(edge)))
     found = "edge::indicators::TABLES[0].state(&[{}]).map(|row| row.state)"
     probes = ((found.format(", ".join(map(pattern_text, seen))), option(state)) for seen, state in cases.items())
     check(cargo, "edge-indicators", crate, probes)

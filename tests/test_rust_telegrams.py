@@ -243,7 +243,7 @@ fn main() {
 @pytest.mark.parametrize("kind", ["real", "edge"])
 def test_agrees_with_the_reference(cargo: Cargo, model: Model, edge: Model, kind: str) -> None:
     chosen = model if kind == "real" else edge
-    crate = cargo.place("crate" if kind == "real" else "edge-telegrams", texts(TARGET.render(chosen)))
+    crate = cargo.locked("crate" if kind == "real" else "edge-telegrams", texts(TARGET.render(chosen)))
     folder = cargo.place(
         f"driver-{kind}",
         {"Cargo.toml": manifest(f"driver-{kind}", crate), "src/main.rs": driver(chosen.devices)},
@@ -268,7 +268,7 @@ def test_agrees_with_the_reference(cargo: Cargo, model: Model, edge: Model, kind
 
 def test_worked_telegrams_and_random_bytes(cargo: Cargo, model: Model) -> None:
     """The crate's own tests: one for each worked telegram, one for each layout."""
-    crate = cargo.place("crate", texts(TARGET.render(model)))
+    crate = cargo.locked("crate", texts(TARGET.render(model)))
     printed = cargo.succeed(crate, "test", "--offline", "--tests")
     passed = set(re.findall(r"^test (\S+) \.\.\. ok$", printed, re.MULTILINE))
     for device in model.devices:
@@ -277,6 +277,59 @@ def test_worked_telegrams_and_random_bytes(cargo: Cargo, model: Model) -> None:
         assert expected <= passed
     total = sum(len(device.examples) + len(device.layouts) for device in model.devices)
     assert len(re.findall(r" \.\.\. ok$", printed, re.MULTILINE)) == total
+
+
+FEEDER = """/// Feeds a fuzz target with messages of a sequence that is the same in every run.
+pub fn inputs() -> impl Iterator<Item = Vec<u8>> {
+    let mut state = 1u32;
+    let mut next = move || {
+        state = state.wrapping_mul(1664525).wrapping_add(1013904223);
+        (state >> 24) as u8
+    };
+    (0..20_000).map(move |_| {
+        let length = next() % 41;
+        (0..length).map(|_| next()).map(|octet| if octet > 200 { octet & 3 } else { octet }).collect()
+    })
+}
+
+#[macro_export]
+macro_rules! fuzz_target {
+    (|$input:ident: &[u8]| $body:block) => {
+        #[no_mangle]
+        pub extern "C" fn main() -> i32 {
+            for data in $crate::inputs() {
+                let $input: &[u8] = &data;
+                $body
+            }
+            0
+        }
+    };
+}
+"""
+"""In place of libfuzzer-sys, which needs nightly Rust."""
+
+
+def test_the_fuzz_targets(cargo: Cargo, model: Model) -> None:
+    files = texts(TARGET.render(model))
+    crate = cargo.locked("crate", files)
+    feeder = cargo.place(
+        "libfuzzer-sys",
+        {
+            "Cargo.toml": '[package]\nname = "libfuzzer-sys"\nversion = "0.0.0"\nedition = "2021"\n',
+            "src/lib.rs": FEEDER,
+        },
+    )
+    fuzz = {path.removeprefix("fuzz/"): text for path, text in files.items() if path.startswith("fuzz/")}
+    fuzz["Cargo.toml"] = fuzz["Cargo.toml"].replace('path = ".."', f'path = "{crate.as_posix()}"')
+    pinned = re.compile(r'^libfuzzer-sys = "=[\d.]+"$', re.MULTILINE)
+    fuzz["Cargo.toml"] = pinned.sub(f'libfuzzer-sys = {{ path = "{feeder.as_posix()}" }}', fuzz["Cargo.toml"])
+    folder = cargo.place("fuzz", fuzz)
+    cargo.component(folder, "fmt")
+    cargo.succeed(folder, "fmt", "--check")
+    devices = [device for device in model.devices if device.layouts]
+    assert len(fuzz) == 1 + len(devices)
+    for device in devices:
+        cargo.succeed(folder, "run", "--offline", "--quiet", "--bin", safe(snake(device.id), "rust"))
 
 
 ENCODING = {
@@ -332,7 +385,7 @@ PROBES = {
 
 
 def test_refuses_contradictory_values(cargo: Cargo, edge: Model) -> None:
-    crate = cargo.place("edge-telegrams", texts(TARGET.render(edge)))
+    crate = cargo.locked("edge-telegrams", texts(TARGET.render(edge)))
     probes = {f"({value}).encode(&mut [0; 64])": result for value, result in ENCODING.items()} | PROBES
     assert cargo.probe("refusals", crate, ["codec::*", "type_::telegrams::*"], list(probes)) == probes
 
@@ -342,7 +395,7 @@ def test_comments(model: Model) -> None:
     for device in model.devices:
         text = files.get(f"src/{device.id}/telegrams.rs", "")
         for layout in device.layouts:
-            block = re.search(rf"((?:///.*\n)+)#\[derive.*\n(pub struct {type_name(layout.id)}\b[^}}]*)", text)
+            block = re.search(rf"((?:///.*\n)+)(?:#\[.*\n)+(pub struct {type_name(layout.id)}\b[^}}]*)", text)
             assert block, layout.id
             comment, body = (
                 re.sub(r"\\(?=[^\w\s])", "", " ".join(part.replace("///", "").split())) for part in block.groups()

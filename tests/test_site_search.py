@@ -450,8 +450,8 @@ def test_text_of_the_spec_is_never_markup(site: Path, model: Model, browser: Bro
     device = model.devices[0]
     codes = (replace(device.codes[0], name=name), *device.codes[1:])
     hostile = replace(model, devices=(replace(device, codes=codes), *model.devices[1:]))
-    for file in ("index.html", "style.css", *(path.name for path in site.glob("*.js"))):
-        shutil.copy(site / file, tmp_path)
+    for path in (site / "index.html", *site.glob("*.css"), *site.glob("*.js"), *site.glob("*.svg")):
+        shutil.copy(path, tmp_path)
     (tmp_path / "search-data.js").write_text(search_data(hostile, []), encoding="utf-8")
     context = browser.new_context()
     visitor = Visitor(context.new_page(), tmp_path)

@@ -4,6 +4,7 @@ from generator.diagnostics import Problems
 from generator.elaborate.codes import Facts
 from generator.elaborate.device import device, drive
 from generator.elaborate.manuals import manual, standard
+from generator.elaborate.pins import pins
 from generator.model import Model
 from generator.spec import Spec
 
@@ -33,4 +34,5 @@ def elaborate(spec: Spec, problems: Problems) -> Model:
         manuals=tuple(manuals.values()),
         standard_objects=objects,
         cob_ids=tuple(c for _, cob_ids in standards for c in cob_ids),
+        pins=tuple(pins(spec.names)) if spec.names else (),
     )

@@ -13,6 +13,7 @@ from generator.model.error import ErrorEntry, PrintedNumber
 from generator.model.gsd import Gsd
 from generator.model.indicator import IndicatorRow, IndicatorTable, Led, Light, Pattern, SwitchGroup, SwitchRow
 from generator.model.objects import CobId, DictionaryObject, StandardObject, StandardSubIndex, SubIndex
+from generator.model.pin import Pin
 from generator.model.reference import CodeRef, ErrorRef, ObjectRef
 from generator.model.table import Column, Formula, FormulaExample, Table
 from generator.model.telegram import Example, Field, FieldType, Layout, Sizes, Values
@@ -59,6 +60,7 @@ __all__ = [
     "Option",
     "Origin",
     "Pattern",
+    "Pin",
     "PrintedIndex",
     "PrintedNumber",
     "Range",

@@ -9,6 +9,7 @@ from generator.model.error import ErrorEntry
 from generator.model.gsd import Gsd
 from generator.model.indicator import IndicatorTable, SwitchGroup
 from generator.model.objects import CobId, DictionaryObject, StandardObject
+from generator.model.pin import Pin
 from generator.model.table import Formula, Table
 from generator.model.telegram import Example, Layout
 from generator.model.values import BitField
@@ -142,3 +143,4 @@ class Model:
     manuals: tuple[Manual, ...]
     standard_objects: tuple[StandardObject, ...]
     cob_ids: tuple[CobId, ...]
+    pins: tuple[Pin, ...]

@@ -31,6 +31,7 @@ static void run_0(const uint8_t *data, size_t size, uint8_t *again)
     if (e94aycca_sdo_decode(data, size, &telegram) == DRIVESPEC_OK) {
         expect(e94aycca_sdo_encode(&telegram, again, size, &written) == DRIVESPEC_OK);
         expect((written == size) && ((size == 0u) || (memcmp(data, again, size) == 0)));
+        expect((size == 0u) || (e94aycca_sdo_encode(&telegram, again, size - 1u, &written) != DRIVESPEC_OK));
     }
 }
 
@@ -42,6 +43,7 @@ static void run_1(const uint8_t *data, size_t size, uint8_t *again)
     if (e94aycca_sdo_segment_request_decode(data, size, &telegram) == DRIVESPEC_OK) {
         expect(e94aycca_sdo_segment_request_encode(&telegram, again, size, &written) == DRIVESPEC_OK);
         expect((written == size) && ((size == 0u) || (memcmp(data, again, size) == 0)));
+        expect((size == 0u) || (e94aycca_sdo_segment_request_encode(&telegram, again, size - 1u, &written) != DRIVESPEC_OK));
     }
 }
 
@@ -53,6 +55,7 @@ static void run_2(const uint8_t *data, size_t size, uint8_t *again)
     if (e94aycca_sdo_segment_response_decode(data, size, &telegram) == DRIVESPEC_OK) {
         expect(e94aycca_sdo_segment_response_encode(&telegram, again, size, &written) == DRIVESPEC_OK);
         expect((written == size) && ((size == 0u) || (memcmp(data, again, size) == 0)));
+        expect((size == 0u) || (e94aycca_sdo_segment_response_encode(&telegram, again, size - 1u, &written) != DRIVESPEC_OK));
     }
 }
 
@@ -64,6 +67,7 @@ static void run_3(const uint8_t *data, size_t size, uint8_t *again)
     if (e94aycca_sdo_error_decode(data, size, &telegram) == DRIVESPEC_OK) {
         expect(e94aycca_sdo_error_encode(&telegram, again, size, &written) == DRIVESPEC_OK);
         expect((written == size) && ((size == 0u) || (memcmp(data, again, size) == 0)));
+        expect((size == 0u) || (e94aycca_sdo_error_encode(&telegram, again, size - 1u, &written) != DRIVESPEC_OK));
     }
 }
 
@@ -75,6 +79,7 @@ static void run_4(const uint8_t *data, size_t size, uint8_t *again)
     if (e94aycca_nmt_decode(data, size, &telegram) == DRIVESPEC_OK) {
         expect(e94aycca_nmt_encode(&telegram, again, size, &written) == DRIVESPEC_OK);
         expect((written == size) && ((size == 0u) || (memcmp(data, again, size) == 0)));
+        expect((size == 0u) || (e94aycca_nmt_encode(&telegram, again, size - 1u, &written) != DRIVESPEC_OK));
     }
 }
 
@@ -86,6 +91,7 @@ static void run_5(const uint8_t *data, size_t size, uint8_t *again)
     if (e94aycca_node_guarding_response_decode(data, size, &telegram) == DRIVESPEC_OK) {
         expect(e94aycca_node_guarding_response_encode(&telegram, again, size, &written) == DRIVESPEC_OK);
         expect((written == size) && ((size == 0u) || (memcmp(data, again, size) == 0)));
+        expect((size == 0u) || (e94aycca_node_guarding_response_encode(&telegram, again, size - 1u, &written) != DRIVESPEC_OK));
     }
 }
 
@@ -97,6 +103,7 @@ static void run_6(const uint8_t *data, size_t size, uint8_t *again)
     if (e94aycca_heartbeat_decode(data, size, &telegram) == DRIVESPEC_OK) {
         expect(e94aycca_heartbeat_encode(&telegram, again, size, &written) == DRIVESPEC_OK);
         expect((written == size) && ((size == 0u) || (memcmp(data, again, size) == 0)));
+        expect((size == 0u) || (e94aycca_heartbeat_encode(&telegram, again, size - 1u, &written) != DRIVESPEC_OK));
     }
 }
 
@@ -108,6 +115,7 @@ static void run_7(const uint8_t *data, size_t size, uint8_t *again)
     if (e94aycca_emergency_decode(data, size, &telegram) == DRIVESPEC_OK) {
         expect(e94aycca_emergency_encode(&telegram, again, size, &written) == DRIVESPEC_OK);
         expect((written == size) && ((size == 0u) || (memcmp(data, again, size) == 0)));
+        expect((size == 0u) || (e94aycca_emergency_encode(&telegram, again, size - 1u, &written) != DRIVESPEC_OK));
     }
 }
 
@@ -119,6 +127,7 @@ static void run_8(const uint8_t *data, size_t size, uint8_t *again)
     if (e94aycca_pdo_mapping_entry_decode(data, size, &telegram) == DRIVESPEC_OK) {
         expect(e94aycca_pdo_mapping_entry_encode(&telegram, again, size, &written) == DRIVESPEC_OK);
         expect((written == size) && ((size == 0u) || (memcmp(data, again, size) == 0)));
+        expect((size == 0u) || (e94aycca_pdo_mapping_entry_encode(&telegram, again, size - 1u, &written) != DRIVESPEC_OK));
     }
 }
 
@@ -130,6 +139,7 @@ static void run_9(const uint8_t *data, size_t size, uint8_t *again)
     if (e94aycca_consumer_heartbeat_entry_decode(data, size, &telegram) == DRIVESPEC_OK) {
         expect(e94aycca_consumer_heartbeat_entry_encode(&telegram, again, size, &written) == DRIVESPEC_OK);
         expect((written == size) && ((size == 0u) || (memcmp(data, again, size) == 0)));
+        expect((size == 0u) || (e94aycca_consumer_heartbeat_entry_encode(&telegram, again, size - 1u, &written) != DRIVESPEC_OK));
     }
 }
 
@@ -141,6 +151,7 @@ static void run_10(const uint8_t *data, size_t size, uint8_t *again)
     if (e94aycca_node_guarding_entry_decode(data, size, &telegram) == DRIVESPEC_OK) {
         expect(e94aycca_node_guarding_entry_encode(&telegram, again, size, &written) == DRIVESPEC_OK);
         expect((written == size) && ((size == 0u) || (memcmp(data, again, size) == 0)));
+        expect((size == 0u) || (e94aycca_node_guarding_entry_encode(&telegram, again, size - 1u, &written) != DRIVESPEC_OK));
     }
 }
 
@@ -152,6 +163,7 @@ static void run_11(const uint8_t *data, size_t size, uint8_t *again)
     if (e94aycca_cob_id_entry_decode(data, size, &telegram) == DRIVESPEC_OK) {
         expect(e94aycca_cob_id_entry_encode(&telegram, again, size, &written) == DRIVESPEC_OK);
         expect((written == size) && ((size == 0u) || (memcmp(data, again, size) == 0)));
+        expect((size == 0u) || (e94aycca_cob_id_entry_encode(&telegram, again, size - 1u, &written) != DRIVESPEC_OK));
     }
 }
 
@@ -163,6 +175,7 @@ static void run_12(const uint8_t *data, size_t size, uint8_t *again)
     if (e94aycca_pdo_cob_id_entry_decode(data, size, &telegram) == DRIVESPEC_OK) {
         expect(e94aycca_pdo_cob_id_entry_encode(&telegram, again, size, &written) == DRIVESPEC_OK);
         expect((written == size) && ((size == 0u) || (memcmp(data, again, size) == 0)));
+        expect((size == 0u) || (e94aycca_pdo_cob_id_entry_encode(&telegram, again, size - 1u, &written) != DRIVESPEC_OK));
     }
 }
 
@@ -174,6 +187,7 @@ static void run_13(const uint8_t *data, size_t size, uint8_t *again)
     if (e94aycca_sync_cob_id_entry_decode(data, size, &telegram) == DRIVESPEC_OK) {
         expect(e94aycca_sync_cob_id_entry_encode(&telegram, again, size, &written) == DRIVESPEC_OK);
         expect((written == size) && ((size == 0u) || (memcmp(data, again, size) == 0)));
+        expect((size == 0u) || (e94aycca_sync_cob_id_entry_encode(&telegram, again, size - 1u, &written) != DRIVESPEC_OK));
     }
 }
 
@@ -185,6 +199,7 @@ static void run_14(const uint8_t *data, size_t size, uint8_t *again)
     if (e94aycca_signature_decode(data, size, &telegram) == DRIVESPEC_OK) {
         expect(e94aycca_signature_encode(&telegram, again, size, &written) == DRIVESPEC_OK);
         expect((written == size) && ((size == 0u) || (memcmp(data, again, size) == 0)));
+        expect((size == 0u) || (e94aycca_signature_encode(&telegram, again, size - 1u, &written) != DRIVESPEC_OK));
     }
 }
 

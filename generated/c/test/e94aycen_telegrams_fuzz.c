@@ -31,6 +31,7 @@ static void run_0(const uint8_t *data, size_t size, uint8_t *again)
     if (e94aycen_gci_header_decode(data, size, &telegram) == DRIVESPEC_OK) {
         expect(e94aycen_gci_header_encode(&telegram, again, size, &written) == DRIVESPEC_OK);
         expect((written == size) && ((size == 0u) || (memcmp(data, again, size) == 0)));
+        expect((size == 0u) || (e94aycen_gci_header_encode(&telegram, again, size - 1u, &written) != DRIVESPEC_OK));
     }
 }
 
@@ -42,6 +43,7 @@ static void run_1(const uint8_t *data, size_t size, uint8_t *again)
     if (e94aycen_gci_p0_decode(data, size, &telegram) == DRIVESPEC_OK) {
         expect(e94aycen_gci_p0_encode(&telegram, again, size, &written) == DRIVESPEC_OK);
         expect((written == size) && ((size == 0u) || (memcmp(data, again, size) == 0)));
+        expect((size == 0u) || (e94aycen_gci_p0_encode(&telegram, again, size - 1u, &written) != DRIVESPEC_OK));
     }
 }
 
@@ -53,6 +55,7 @@ static void run_2(const uint8_t *data, size_t size, uint8_t *again)
     if (e94aycen_gci_decode(data, size, &telegram) == DRIVESPEC_OK) {
         expect(e94aycen_gci_encode(&telegram, again, size, &written) == DRIVESPEC_OK);
         expect((written == size) && ((size == 0u) || (memcmp(data, again, size) == 0)));
+        expect((size == 0u) || (e94aycen_gci_encode(&telegram, again, size - 1u, &written) != DRIVESPEC_OK));
     }
 }
 

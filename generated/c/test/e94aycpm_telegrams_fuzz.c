@@ -31,6 +31,7 @@ static void run_0(const uint8_t *data, size_t size, uint8_t *again)
     if (e94aycpm_drivecom_4_decode(data, size, &telegram) == DRIVESPEC_OK) {
         expect(e94aycpm_drivecom_4_encode(&telegram, again, size, &written) == DRIVESPEC_OK);
         expect((written == size) && ((size == 0u) || (memcmp(data, again, size) == 0)));
+        expect((size == 0u) || (e94aycpm_drivecom_4_encode(&telegram, again, size - 1u, &written) != DRIVESPEC_OK));
     }
 }
 
@@ -42,6 +43,7 @@ static void run_1(const uint8_t *data, size_t size, uint8_t *again)
     if (e94aycpm_drivecom_2_decode(data, size, &telegram) == DRIVESPEC_OK) {
         expect(e94aycpm_drivecom_2_encode(&telegram, again, size, &written) == DRIVESPEC_OK);
         expect((written == size) && ((size == 0u) || (memcmp(data, again, size) == 0)));
+        expect((size == 0u) || (e94aycpm_drivecom_2_encode(&telegram, again, size - 1u, &written) != DRIVESPEC_OK));
     }
 }
 
@@ -53,6 +55,7 @@ static void run_2(const uint8_t *data, size_t size, uint8_t *again)
     if (e94aycpm_drivecom_1_decode(data, size, &telegram) == DRIVESPEC_OK) {
         expect(e94aycpm_drivecom_1_encode(&telegram, again, size, &written) == DRIVESPEC_OK);
         expect((written == size) && ((size == 0u) || (memcmp(data, again, size) == 0)));
+        expect((size == 0u) || (e94aycpm_drivecom_1_encode(&telegram, again, size - 1u, &written) != DRIVESPEC_OK));
     }
 }
 
@@ -64,6 +67,7 @@ static void run_3(const uint8_t *data, size_t size, uint8_t *again)
     if (e94aycpm_drivecom_error_decode(data, size, &telegram) == DRIVESPEC_OK) {
         expect(e94aycpm_drivecom_error_encode(&telegram, again, size, &written) == DRIVESPEC_OK);
         expect((written == size) && ((size == 0u) || (memcmp(data, again, size) == 0)));
+        expect((size == 0u) || (e94aycpm_drivecom_error_encode(&telegram, again, size - 1u, &written) != DRIVESPEC_OK));
     }
 }
 
@@ -75,6 +79,7 @@ static void run_4(const uint8_t *data, size_t size, uint8_t *again)
     if (e94aycpm_drivecom_abort_decode(data, size, &telegram) == DRIVESPEC_OK) {
         expect(e94aycpm_drivecom_abort_encode(&telegram, again, size, &written) == DRIVESPEC_OK);
         expect((written == size) && ((size == 0u) || (memcmp(data, again, size) == 0)));
+        expect((size == 0u) || (e94aycpm_drivecom_abort_encode(&telegram, again, size - 1u, &written) != DRIVESPEC_OK));
     }
 }
 
@@ -86,6 +91,7 @@ static void run_5(const uint8_t *data, size_t size, uint8_t *again)
     if (e94aycpm_dpv1_read_request_decode(data, size, &telegram) == DRIVESPEC_OK) {
         expect(e94aycpm_dpv1_read_request_encode(&telegram, again, size, &written) == DRIVESPEC_OK);
         expect((written == size) && ((size == 0u) || (memcmp(data, again, size) == 0)));
+        expect((size == 0u) || (e94aycpm_dpv1_read_request_encode(&telegram, again, size - 1u, &written) != DRIVESPEC_OK));
     }
 }
 
@@ -97,6 +103,7 @@ static void run_6(const uint8_t *data, size_t size, uint8_t *again)
     if (e94aycpm_dpv1_read_response_decode(data, size, &telegram) == DRIVESPEC_OK) {
         expect(e94aycpm_dpv1_read_response_encode(&telegram, again, size, &written) == DRIVESPEC_OK);
         expect((written == size) && ((size == 0u) || (memcmp(data, again, size) == 0)));
+        expect((size == 0u) || (e94aycpm_dpv1_read_response_encode(&telegram, again, size - 1u, &written) != DRIVESPEC_OK));
     }
 }
 
@@ -108,6 +115,7 @@ static void run_7(const uint8_t *data, size_t size, uint8_t *again)
     if (e94aycpm_dpv1_read_error_decode(data, size, &telegram) == DRIVESPEC_OK) {
         expect(e94aycpm_dpv1_read_error_encode(&telegram, again, size, &written) == DRIVESPEC_OK);
         expect((written == size) && ((size == 0u) || (memcmp(data, again, size) == 0)));
+        expect((size == 0u) || (e94aycpm_dpv1_read_error_encode(&telegram, again, size - 1u, &written) != DRIVESPEC_OK));
     }
 }
 
@@ -119,6 +127,7 @@ static void run_8(const uint8_t *data, size_t size, uint8_t *again)
     if (e94aycpm_dpv1_write_request_decode(data, size, &telegram) == DRIVESPEC_OK) {
         expect(e94aycpm_dpv1_write_request_encode(&telegram, again, size, &written) == DRIVESPEC_OK);
         expect((written == size) && ((size == 0u) || (memcmp(data, again, size) == 0)));
+        expect((size == 0u) || (e94aycpm_dpv1_write_request_encode(&telegram, again, size - 1u, &written) != DRIVESPEC_OK));
     }
 }
 
@@ -130,6 +139,7 @@ static void run_9(const uint8_t *data, size_t size, uint8_t *again)
     if (e94aycpm_dpv1_write_response_decode(data, size, &telegram) == DRIVESPEC_OK) {
         expect(e94aycpm_dpv1_write_response_encode(&telegram, again, size, &written) == DRIVESPEC_OK);
         expect((written == size) && ((size == 0u) || (memcmp(data, again, size) == 0)));
+        expect((size == 0u) || (e94aycpm_dpv1_write_response_encode(&telegram, again, size - 1u, &written) != DRIVESPEC_OK));
     }
 }
 
@@ -141,6 +151,7 @@ static void run_10(const uint8_t *data, size_t size, uint8_t *again)
     if (e94aycpm_dpv1_write_error_decode(data, size, &telegram) == DRIVESPEC_OK) {
         expect(e94aycpm_dpv1_write_error_encode(&telegram, again, size, &written) == DRIVESPEC_OK);
         expect((written == size) && ((size == 0u) || (memcmp(data, again, size) == 0)));
+        expect((size == 0u) || (e94aycpm_dpv1_write_error_encode(&telegram, again, size - 1u, &written) != DRIVESPEC_OK));
     }
 }
 
@@ -152,6 +163,7 @@ static void run_11(const uint8_t *data, size_t size, uint8_t *again)
     if (e94aycpm_dpv1_header_decode(data, size, &telegram) == DRIVESPEC_OK) {
         expect(e94aycpm_dpv1_header_encode(&telegram, again, size, &written) == DRIVESPEC_OK);
         expect((written == size) && ((size == 0u) || (memcmp(data, again, size) == 0)));
+        expect((size == 0u) || (e94aycpm_dpv1_header_encode(&telegram, again, size - 1u, &written) != DRIVESPEC_OK));
     }
 }
 
@@ -163,6 +175,7 @@ static void run_12(const uint8_t *data, size_t size, uint8_t *again)
     if (e94aycpm_diagnosis_decode(data, size, &telegram) == DRIVESPEC_OK) {
         expect(e94aycpm_diagnosis_encode(&telegram, again, size, &written) == DRIVESPEC_OK);
         expect((written == size) && ((size == 0u) || (memcmp(data, again, size) == 0)));
+        expect((size == 0u) || (e94aycpm_diagnosis_encode(&telegram, again, size - 1u, &written) != DRIVESPEC_OK));
     }
 }
 

@@ -31,6 +31,7 @@ static void run_0(const uint8_t *data, size_t size, uint8_t *again)
     if (servo931_sdo_decode(data, size, &telegram) == DRIVESPEC_OK) {
         expect(servo931_sdo_encode(&telegram, again, size, &written) == DRIVESPEC_OK);
         expect((written == size) && ((size == 0u) || (memcmp(data, again, size) == 0)));
+        expect((size == 0u) || (servo931_sdo_encode(&telegram, again, size - 1u, &written) != DRIVESPEC_OK));
     }
 }
 
@@ -42,6 +43,7 @@ static void run_1(const uint8_t *data, size_t size, uint8_t *again)
     if (servo931_sdo_error_decode(data, size, &telegram) == DRIVESPEC_OK) {
         expect(servo931_sdo_error_encode(&telegram, again, size, &written) == DRIVESPEC_OK);
         expect((written == size) && ((size == 0u) || (memcmp(data, again, size) == 0)));
+        expect((size == 0u) || (servo931_sdo_error_encode(&telegram, again, size - 1u, &written) != DRIVESPEC_OK));
     }
 }
 
@@ -53,6 +55,7 @@ static void run_2(const uint8_t *data, size_t size, uint8_t *again)
     if (servo931_sdo_error_code_decode(data, size, &telegram) == DRIVESPEC_OK) {
         expect(servo931_sdo_error_code_encode(&telegram, again, size, &written) == DRIVESPEC_OK);
         expect((written == size) && ((size == 0u) || (memcmp(data, again, size) == 0)));
+        expect((size == 0u) || (servo931_sdo_error_code_encode(&telegram, again, size - 1u, &written) != DRIVESPEC_OK));
     }
 }
 
@@ -64,6 +67,7 @@ static void run_3(const uint8_t *data, size_t size, uint8_t *again)
     if (servo931_pdo_decode(data, size, &telegram) == DRIVESPEC_OK) {
         expect(servo931_pdo_encode(&telegram, again, size, &written) == DRIVESPEC_OK);
         expect((written == size) && ((size == 0u) || (memcmp(data, again, size) == 0)));
+        expect((size == 0u) || (servo931_pdo_encode(&telegram, again, size - 1u, &written) != DRIVESPEC_OK));
     }
 }
 
@@ -75,6 +79,7 @@ static void run_4(const uint8_t *data, size_t size, uint8_t *again)
     if (servo931_tpdo1_default_decode(data, size, &telegram) == DRIVESPEC_OK) {
         expect(servo931_tpdo1_default_encode(&telegram, again, size, &written) == DRIVESPEC_OK);
         expect((written == size) && ((size == 0u) || (memcmp(data, again, size) == 0)));
+        expect((size == 0u) || (servo931_tpdo1_default_encode(&telegram, again, size - 1u, &written) != DRIVESPEC_OK));
     }
 }
 
@@ -86,6 +91,7 @@ static void run_5(const uint8_t *data, size_t size, uint8_t *again)
     if (servo931_tpdo2_default_decode(data, size, &telegram) == DRIVESPEC_OK) {
         expect(servo931_tpdo2_default_encode(&telegram, again, size, &written) == DRIVESPEC_OK);
         expect((written == size) && ((size == 0u) || (memcmp(data, again, size) == 0)));
+        expect((size == 0u) || (servo931_tpdo2_default_encode(&telegram, again, size - 1u, &written) != DRIVESPEC_OK));
     }
 }
 
@@ -97,6 +103,7 @@ static void run_6(const uint8_t *data, size_t size, uint8_t *again)
     if (servo931_emergency_decode(data, size, &telegram) == DRIVESPEC_OK) {
         expect(servo931_emergency_encode(&telegram, again, size, &written) == DRIVESPEC_OK);
         expect((written == size) && ((size == 0u) || (memcmp(data, again, size) == 0)));
+        expect((size == 0u) || (servo931_emergency_encode(&telegram, again, size - 1u, &written) != DRIVESPEC_OK));
     }
 }
 
@@ -108,6 +115,7 @@ static void run_7(const uint8_t *data, size_t size, uint8_t *again)
     if (servo931_heartbeat_decode(data, size, &telegram) == DRIVESPEC_OK) {
         expect(servo931_heartbeat_encode(&telegram, again, size, &written) == DRIVESPEC_OK);
         expect((written == size) && ((size == 0u) || (memcmp(data, again, size) == 0)));
+        expect((size == 0u) || (servo931_heartbeat_encode(&telegram, again, size - 1u, &written) != DRIVESPEC_OK));
     }
 }
 

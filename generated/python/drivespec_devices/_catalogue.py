@@ -16,6 +16,7 @@ from drivespec_devices._enums import Flags, Selection
 
 TYPE_CHECKING = False  # type checkers take it for True; it saves the time that importing typing costs
 if TYPE_CHECKING:
+    from fractions import Fraction
     from typing import Any
 
 
@@ -133,7 +134,7 @@ class Catalogue:
         known = self._codes_at.get((index, subindex, slot))
         if known is not None:
             return known
-        found = []
+        found: list[records.CodeRef] = []
         number = self._numbers_by_index.get(index)
         if number is not None:
             code = self.code(number)
@@ -304,7 +305,7 @@ def _cite(row: Any) -> Any:
     return None if row is None else records.Cite(*row)
 
 
-def _bound(value: Any) -> Any:
+def _bound(value: int | tuple[int, int]) -> int | Fraction:
     if not isinstance(value, tuple):
         return value
     from fractions import Fraction  # slow to import, and few ranges need it
@@ -316,7 +317,7 @@ def _range(row: Any) -> records.Range | None:
     return None if row is None else records.Range(_bound(row[0]), _bound(row[1]), row[2])
 
 
-def _default(value: Any) -> Any:
+def _default(value: int | str | tuple[int] | None) -> int | str | records.NodeRelative | None:
     return records.NodeRelative(*value) if isinstance(value, tuple) else value
 
 

@@ -236,7 +236,7 @@ TABLES: tuple[tuple[object, ...], ...] = (
         "manual", ("EDS94AYCCA-EN-5.0", "4.1", 17), ("external-supply", "rpdo5-to-8"),
     ),
     (
-        "protocols", "other", "Supported protocols",
+        "protocols", "protocol", "Supported protocols",
         (("protocol", "Protocol", ""), ("category", "Category", ""), ("role", "Role", "")),
         (
             ("PDO write", "Standard PDO protocols", "-"), ("PDO read", "Standard PDO protocols", "-"),
@@ -285,7 +285,7 @@ TABLES: tuple[tuple[object, ...], ...] = (
         "manual", ("EDS94AYCCA-EN-5.0", "4.4", 21), (),
     ),
     (
-        "insulation-example", "technical-data", "Example of the insulation between two terminals",
+        "insulation-example", "terminal", "Example of the insulation between two terminals",
         (("terminal", "Terminal", ""), ("insulation", "Insulation", "")),
         (
             ("Bus terminal in slot MXI1 or MXI2", "basic insulation"),
@@ -848,7 +848,7 @@ TABLES: tuple[tuple[object, ...], ...] = (
         (), "manual", ("EDS94AYCCA-EN-5.0", "13.1", 106), (),
     ),
     (
-        "attribute-columns", "other", "Columns of the table of attributes",
+        "attribute-columns", "attributes", "Columns of the table of attributes",
         (("column", "Column", ""), ("entry", "Entry", ""), ("meaning", "Meaning", "")),
         (
             ("Index dec", "24575 - Lenze code number", "Index of the code; its subcode is the subindex"),
@@ -871,7 +871,7 @@ TABLES: tuple[tuple[object, ...], ...] = (
         (), "manual", ("EDS94AYCCA-EN-5.0", "13.4", 149), (),
     ),
     (
-        "attribute-factors", "data-type", "Factor of the table of attributes",
+        "attribute-factors", "attributes", "Factor of the table of attributes",
         (("factor", "Factor", ""), ("positions", "Decimal positions", "")), ((1, 0), (10, 1), (100, 2), (1000, 3)),
         (), "manual", ("EDS94AYCCA-EN-5.0", "13.4", 149), (),
     ),

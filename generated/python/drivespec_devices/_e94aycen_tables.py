@@ -134,7 +134,7 @@ TABLES: tuple[tuple[object, ...], ...] = (
         ("The insulation is built to EN 61800-5-1.",), "manual", ("EDS94AYCEN-EN-9.0", "4.2", 17), (),
     ),
     (
-        "insulation-example", "other", "Protective insulation: worked example",
+        "insulation-example", "terminal", "Protective insulation: worked example",
         (("place", "Place", ""), ("insulation", "Insulation", "")),
         (
             ("Bus terminal of the device module in MXI1, MXI2", "functional insulation"),
@@ -208,7 +208,7 @@ TABLES: tuple[tuple[object, ...], ...] = (
         ("EDS94AYCEN-EN-9.0", "5.2.3", 24), ("cable-pair-numbers", "cable-white-blue"),
     ),
     (
-        "ethernet-address-settings", "configuration", "Ethernet address settings",
+        "ethernet-address-settings", "address", "Ethernet address settings",
         (
             ("parameter", "Parameter", ""), ("mxi1", "Code for slot MXI1", ""), ("mxi2", "Code for slot MXI2", ""),
             ("lenze_setting", "Lenze setting", ""),
@@ -238,7 +238,7 @@ TABLES: tuple[tuple[object, ...], ...] = (
         "manual", ("EDS94AYCEN-EN-9.0", "6.2.1", 28), ("dhcp-gateway",),
     ),
     (
-        "subnet-mask-examples", "configuration", "Examples of subnet masks",
+        "subnet-mask-examples", "address", "Examples of subnet masks",
         (("mask", "Subnet mask", ""), ("net", "Numbers of the Net ID", ""), ("host", "Numbers of the Host ID", "")),
         (("255.255.255.0", 3, 1), ("255.255.0.0", 2, 2), ("255.0.0.0", 1, 3)), (), "manual",
         ("EDS94AYCEN-EN-9.0", "6.2.4", 31), (),
@@ -260,7 +260,7 @@ TABLES: tuple[tuple[object, ...], ...] = (
         ("Written with hyphens, for example 00-0A-86-00-00-0A.",), "manual", ("EDS94AYCEN-EN-9.0", "6.2.6", 33), (),
     ),
     (
-        "dhcp-flag", "configuration", "DHCP flag settings",
+        "dhcp-flag", "address", "DHCP flag settings",
         (
             ("flag", "UseIPfromDhcp", ""), ("value", "Value of C13005 / C14005", ""), ("text", "Text", ""),
             ("effect", "IP settings", ""),
@@ -270,7 +270,7 @@ TABLES: tuple[tuple[object, ...], ...] = (
         ("EDS94AYCEN-EN-9.0", "6.3", 34), ("term-dhcp",),
     ),
     (
-        "dhcp-network", "technical-data", "Data relating to the DHCP network architecture",
+        "dhcp-network", "address", "Data relating to the DHCP network architecture",
         (("property", "Property", ""), ("value", "Value", ""), ("remark", "Remark", "")),
         (
             ("DHCP model", "Client/Server", "-"), ("Transport protocol", "UDP", "-"), ("Ports", 67, "Server - UDP"),
@@ -281,7 +281,7 @@ TABLES: tuple[tuple[object, ...], ...] = (
         ("EDS94AYCEN-EN-9.0", "6.3.2", 35), ("dhcp-packet-size",),
     ),
     (
-        "dhcp-sequence", "other", "DHCP operating mode",
+        "dhcp-sequence", "address", "DHCP operating mode",
         (
             ("step", "Step", ""), ("message", "Message", ""), ("sender", "Sender", ""),
             ("holds", "What it holds or does", ""),
@@ -295,7 +295,7 @@ TABLES: tuple[tuple[object, ...], ...] = (
         (), "manual", ("EDS94AYCEN-EN-9.0", "6.3.3", 35), ("dhcp-new-address", "dhcp-offer-unicast"),
     ),
     (
-        "dhcp-packet", "other", "DHCP packet structure",
+        "dhcp-packet", "telegram", "DHCP packet structure",
         (("field", "Field", ""), ("size", "Size", ""), ("title", "Description", ""), ("remark", "Remark", "")),
         (
             ("op", "1 Byte", "Opcode", "client request or server response"),
@@ -324,7 +324,7 @@ TABLES: tuple[tuple[object, ...], ...] = (
         ("dhcp-field-sizes", "dhcp-options-size", "dhcp-yiaddr", "dhcp-ciaddr", "dhcp-siaddr", "dhcp-file"),
     ),
     (
-        "dhcp-message", "other", "Fields of a DHCP message by RFC 2131",
+        "dhcp-message", "telegram", "Fields of a DHCP message by RFC 2131",
         (("field", "Field", ""), ("offset", "Offset", "bytes"), ("length", "Length", "bytes")),
         (
             ("op", 0, 1), ("htype", 1, 1), ("hlen", 2, 1), ("hops", 3, 1), ("xid", 4, 4), ("secs", 8, 2),
@@ -335,7 +335,7 @@ TABLES: tuple[tuple[object, ...], ...] = (
         ("RFC-2131", "2", 10), (),
     ),
     (
-        "dhcp-options", "other", "DHCP options by RFC 2132",
+        "dhcp-options", "telegram", "DHCP options by RFC 2132",
         (("option", "Option", ""), ("name", "Name", ""), ("section", "Section", "")),
         (
             (1, "Subnet Mask", "3.3"), (3, "Router", "3.5"), (50, "Requested IP Address", "9.1"),
@@ -345,7 +345,7 @@ TABLES: tuple[tuple[object, ...], ...] = (
         (),
     ),
     (
-        "dhcp-message-types", "other", "Values of the DHCP message type (option 53) by RFC 2132",
+        "dhcp-message-types", "telegram", "Values of the DHCP message type (option 53) by RFC 2132",
         (("value", "Value", ""), ("name", "Message", "")),
         ((1, "DHCPDISCOVER"), (2, "DHCPOFFER"), (3, "DHCPREQUEST"), (5, "DHCPACK")), (), "standard",
         ("RFC-2132", "9.6", None), (),
@@ -379,12 +379,12 @@ TABLES: tuple[tuple[object, ...], ...] = (
         "manual", ("EDS94AYCEN-EN-9.0", "7", 38), ("c01501-effect", "c00168-fault-memory"),
     ),
     (
-        "factors", "other", "Factor for data transmission",
+        "factors", "attributes", "Factor for data transmission",
         (("factor", "Factor", ""), ("decimals", "Decimal positions", "")), ((1, 0), (10, 1), (100, 2), (1000, 3)), (),
         "manual", ("EDS94AYCEN-EN-9.0", "9.4", 64), (),
     ),
     (
-        "attribute-columns", "other", "How to read the table of attributes",
+        "attribute-columns", "attributes", "How to read the table of attributes",
         (("column", "Column", ""), ("entry", "Entry", ""), ("meaning", "Meaning", ""), ("remark", "Remark", "")),
         (
             ("Code", "Cxxxxx", "Parameter name", "-"), ("Name", "Text", "Parameter short text (display text)", "-"),
@@ -421,7 +421,7 @@ TABLES: tuple[tuple[object, ...], ...] = (
         (), "manual", ("EDS94AYCEN-EN-9.0", "7.4", 41), ("gci-string-maximum", "gci-octet-string"),
     ),
     (
-        "gci-value-areas", "other", "Parameter values of different data lengths in P3 and P4",
+        "gci-value-areas", "telegram", "Parameter values of different data lengths in P3 and P4",
         (
             ("length", "Data length", "bytes"), ("p3_1", "P3 byte 1", ""), ("p3_2", "P3 byte 2", ""),
             ("p3_3", "P3 byte 3", ""), ("p3_4", "P3 byte 4", ""), ("p4_1", "P4 byte 1", ""),

@@ -8,7 +8,6 @@ from drivespec_devices import _telegram as base
 
 TYPE_CHECKING = False  # type checkers take it for True; it saves the time that importing typing costs
 if TYPE_CHECKING:
-    from collections.abc import Iterable
     from typing import Final
 
 

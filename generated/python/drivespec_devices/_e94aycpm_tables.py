@@ -211,7 +211,7 @@ TABLES: tuple[tuple[object, ...], ...] = (
         "manual", ("EDS94AYCPM-EN-12.0", "4.2", 17), (),
     ),
     (
-        "insulation-example", "other", "Protective insulation: worked example",
+        "insulation-example", "terminal", "Protective insulation: worked example",
         (("place", "Place", ""), ("insulation", "Insulation", "")),
         (
             ("Bus terminal of the device module in MXI1, MXI2", "functionally insulated"),
@@ -252,7 +252,7 @@ TABLES: tuple[tuple[object, ...], ...] = (
         (("a", 89), ("b", 134), ("b1", 87), ("e", 23)), (), "manual", ("EDS94AYCPM-EN-12.0", "4.5", 20), (),
     ),
     (
-        "number-of-stations", "other", "Number of stations",
+        "number-of-stations", "topology", "Number of stations",
         (
             ("segment", "Segment", ""), ("masters", "Master (M)", ""), ("slaves", "Slave (S)", ""),
             ("repeaters", "Repeater (R)", ""),
@@ -265,7 +265,7 @@ TABLES: tuple[tuple[object, ...], ...] = (
         "manual", ("EDS94AYCPM-EN-12.0", "5.2.1", 24), ("stations-with-repeater",),
     ),
     (
-        "network-rules", "other", "Network topology",
+        "network-rules", "topology", "Network topology",
         (("subject", "Subject", ""), ("rule", "Rule", ""), ("chapter", "Chapter", "")),
         (
             ("Segment", "terminated at both ends", "5.2.1"),
@@ -464,7 +464,7 @@ TABLES: tuple[tuple[object, ...], ...] = (
         ("diagnosis-gsg-text", "pcd-without-consistency", "user-data-both", "selection-text-length"),
     ),
     (
-        "station-address-source", "configuration", "What sets the station address",
+        "station-address-source", "address", "What sets the station address",
         (("source", "Setting the station address via", ""), ("condition", "Condition", "")),
         (
             ("DIP switch", "At least one switch 1 ... 64 = ON"), ("C13899 / 14899", "Switches 1 ... 64 = OFF"),
@@ -474,7 +474,7 @@ TABLES: tuple[tuple[object, ...], ...] = (
         ("EDS94AYCPM-EN-12.0", "6.3.1", 31), (),
     ),
     (
-        "restart-protection", "configuration", "C00142, auto-restart after mains connection",
+        "restart-protection", "parameters", "C00142, auto-restart after mains connection",
         (
             ("value", "Value", ""), ("text", "Text", ""), ("effect", "Effect after a fault", ""),
             ("lenze_setting", "Lenze setting", ""),
@@ -489,7 +489,7 @@ TABLES: tuple[tuple[object, ...], ...] = (
         (), "manual", ("EDS94AYCPM-EN-12.0", "6.4", 33), (),
     ),
     (
-        "communication-channels", "other", "Communication channels",
+        "communication-channels", "protocol", "Communication channels",
         (
             ("channel", "Channel", ""), ("data", "Data", ""), ("transfer", "Transfer", ""),
             ("saved", "Saved in the controller", ""),
@@ -536,7 +536,7 @@ TABLES: tuple[tuple[object, ...], ...] = (
         ("EDS94AYCPM-EN-12.0", "9.2.5", 53), ("drivecom-three-bytes",),
     ),
     (
-        "drivecom-read-procedure", "other", "Reading parameter data from the controller",
+        "drivecom-read-procedure", "procedure", "Reading parameter data from the controller",
         (("step", "Step", ""), ("data", "Data", ""), ("action", "Action", "")),
         (
             (1, "user data area", "lay out the DP user data in the host"),
@@ -549,7 +549,7 @@ TABLES: tuple[tuple[object, ...], ...] = (
         (), "manual", ("EDS94AYCPM-EN-12.0", "9.2.2.1", 50), (),
     ),
     (
-        "drivecom-write-procedure", "other", "Writing parameter data to the controller",
+        "drivecom-write-procedure", "procedure", "Writing parameter data to the controller",
         (("step", "Step", ""), ("data", "Data", ""), ("action", "Action", "")),
         (
             (1, "user data area", "lay out the DP user data in the host"),
@@ -579,7 +579,7 @@ TABLES: tuple[tuple[object, ...], ...] = (
         "manual", ("EDS94AYCPM-EN-12.0", "9.3", 57), ("dpv1-forty-parameters",),
     ),
     (
-        "dpv1-masters", "other", "Connection establishment between master and slave",
+        "dpv1-masters", "protocol", "Connection establishment between master and slave",
         (("master", "Master", ""), ("example", "Example", ""), ("access", "Access", "")),
         (
             ("Class 1 master", "PLC", 'whenever the slave is in the "Data_Exchange" state'),
@@ -591,7 +591,7 @@ TABLES: tuple[tuple[object, ...], ...] = (
         "manual", ("EDS94AYCPM-EN-12.0", "9.3.1", 58), (),
     ),
     (
-        "dpv1-services", "other", "Acyclic data transfer",
+        "dpv1-services", "protocol", "Acyclic data transfer",
         (("step", "Step", ""), ("service", "Service", ""), ("sender", "Sender", ""), ("holds", "What it holds", "")),
         (
             (1, "Write.req", "master", "parameter request (DB47)"),
@@ -603,7 +603,7 @@ TABLES: tuple[tuple[object, ...], ...] = (
         (), "manual", ("EDS94AYCPM-EN-12.0", "9.3.2", 59), (),
     ),
     (
-        "dpv1-header", "other", "DP-V1 header", (("position", "Position", ""), ("field", "Field", "")),
+        "dpv1-header", "telegram", "DP-V1 header", (("position", "Position", ""), ("field", "Field", "")),
         ((1, "Function identification"), (2, "Slot number"), (3, "Data set"), (4, "Length of the user data")),
         (
             "The parameter request or response follows the header in the data unit (DU) of the telegram.",
@@ -823,7 +823,7 @@ TABLES: tuple[tuple[object, ...], ...] = (
         (), "manual", ("EDS94AYCPM-EN-12.0", "12.3", 85), ("diagnosis-status-coming",),
     ),
     (
-        "attribute-columns", "other", "Columns of the table of attributes",
+        "attribute-columns", "attributes", "Columns of the table of attributes",
         (("column", "Column", ""), ("entry", "Entry", ""), ("meaning", "Meaning", "")),
         (
             ("Index dec", "24575 - Lenze code number", "Index of the code; its subcode is the subindex"),

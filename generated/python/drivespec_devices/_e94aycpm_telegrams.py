@@ -819,7 +819,7 @@ class Dpv1ReadRequest(base.Telegram):
             raise base.short(size - 2, ("axis", 1), ("number_of_indices", 1))
         axis = data[2]
         number_of_indices = data[3]
-        parameters = []
+        parameters: list[Dpv1ReadRequestParameters] = []
         at = 4
         for _ in range(number_of_indices):
             if size - at < 6:
@@ -970,7 +970,7 @@ class Dpv1ReadResponse(base.Telegram):
             raise base.short(size - 2, ("axis", 1), ("number_of_indices", 1))
         axis = data[2]
         number_of_indices = data[3]
-        values = []
+        values: list[Dpv1ReadResponseValues] = []
         at = 4
         for _ in range(number_of_indices):
             if size - at < 2:
@@ -1128,7 +1128,7 @@ class Dpv1ReadError(base.Telegram):
             raise base.short(size - 2, ("axis", 1), ("number_of_indices", 1))
         axis = data[2]
         number_of_indices = data[3]
-        results = []
+        results: list[Dpv1ReadErrorResults] = []
         at = 4
         for _ in range(number_of_indices):
             if size - at < 2:
@@ -1342,7 +1342,7 @@ class Dpv1WriteRequest(base.Telegram):
             raise base.short(size - 2, ("axis", 1), ("number_of_indices", 1))
         axis = data[2]
         number_of_indices = data[3]
-        parameters = []
+        parameters: list[Dpv1WriteRequestParameters] = []
         at = 4
         for _ in range(number_of_indices):
             if size - at < 6:
@@ -1357,7 +1357,7 @@ class Dpv1WriteRequest(base.Telegram):
             parameters.append(Dpv1WriteRequestParameters(
                 attribute=attribute, number_of_subindices=number_of_subindices, index=index, subindex=subindex,
             ))
-        values = []
+        values: list[Dpv1WriteRequestValues] = []
         for _ in range(number_of_indices):
             if size - at < 2:
                 raise base.short(size - at, ("format", 1), ("number_of_values", 1))
@@ -1592,7 +1592,7 @@ class Dpv1WriteError(base.Telegram):
             raise base.short(size - 2, ("axis", 1), ("number_of_indices", 1))
         axis = data[2]
         number_of_indices = data[3]
-        results = []
+        results: list[Dpv1WriteErrorResults] = []
         at = 4
         for _ in range(number_of_indices):
             if size - at < 2:

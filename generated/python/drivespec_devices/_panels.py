@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from drivespec_devices._records import _Record
+from drivespec_devices._records import Record
 
 TYPE_CHECKING = False  # type checkers take it for True; it saves the time that importing typing costs
 if TYPE_CHECKING:
@@ -42,7 +42,7 @@ _LIGHTS = (
 
 
 @dataclass(frozen=True)
-class Pattern(_Record):
+class Pattern(Record):
     """What an LED does.
 
     Attributes:
@@ -106,7 +106,7 @@ def _seconds(text: str) -> Fraction:
 
 
 @dataclass(frozen=True)
-class Led(_Record):
+class Led(Record):
     """An LED: its label on the module, its colour, and what it shows ("" where nothing is printed)."""
 
     __slots__ = ("label", "colour", "name")
@@ -117,7 +117,7 @@ class Led(_Record):
 
 
 @dataclass(frozen=True)
-class IndicatorRow(_Record):
+class IndicatorRow(Record):
     """A state: one pattern for each LED of the table, in its order; ``meaning`` is in our own words."""
 
     __slots__ = ("patterns", "state", "meaning", "origin", "cite")
@@ -130,7 +130,7 @@ class IndicatorRow(_Record):
 
 
 @dataclass(frozen=True)
-class IndicatorTable(_Record):
+class IndicatorTable(Record):
     """LEDs that are read together, and the states that they show."""
 
     __slots__ = ("id", "name", "leds", "rows", "cite", "errata")
@@ -162,7 +162,7 @@ class IndicatorTable(_Record):
 
 
 @dataclass(frozen=True)
-class SwitchRow(_Record):
+class SwitchRow(Record):
     """A printed row: ``positions`` has "1" (ON), "0" (OFF) or "x" (either) for each switch."""
 
     __slots__ = ("value", "positions")
@@ -172,7 +172,7 @@ class SwitchRow(_Record):
 
 
 @dataclass(frozen=True)
-class SwitchGroup(_Record):
+class SwitchGroup(Record):
     """Switches that set one thing.
 
     Attributes:
@@ -233,7 +233,7 @@ class SwitchGroup(_Record):
                 return row.positions
         if isinstance(value, int) and self._is_valid(value):
             rest = value
-            on = set()
+            on: set[int] = set()
             for weight in sorted(self.weights, reverse=True):
                 if weight <= rest:
                     rest -= weight
@@ -251,7 +251,7 @@ class SwitchGroup(_Record):
 
 
 @dataclass(frozen=True)
-class Column(_Record):
+class Column(Record):
     """A column: stable name, heading, unit of its numbers ("" where none)."""
 
     __slots__ = ("id", "name", "unit")
@@ -262,7 +262,7 @@ class Column(_Record):
 
 
 @dataclass(frozen=True)
-class Table(_Record):
+class Table(Record):
     """A table as printed; a row has one cell for each column.
 
     Attributes:

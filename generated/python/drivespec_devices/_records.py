@@ -49,7 +49,7 @@ __all__ = (
 )
 
 
-class _Record:
+class Record:
     """What dataclasses with hand-written slots lack before Python 3.10: copying and pickling."""
 
     __slots__: tuple[str, ...] = ()
@@ -64,7 +64,7 @@ def _enum(device: str, name: str | None) -> Any:
 
 
 @dataclass(frozen=True)
-class Cite(_Record):
+class Cite(Record):
     """Place in a source: id of the manual or standard, chapter as printed, page (``None`` where unknown)."""
 
     __slots__ = ("manual", "chapter", "page")
@@ -79,7 +79,7 @@ class Cite(_Record):
 
 
 @dataclass(frozen=True)
-class Manual(_Record):
+class Manual(Record):
     """A source of facts; ``kind`` is "manual", "standard" or "public", ``date`` "yyyy-mm" as printed."""
 
     __slots__ = ("id", "title", "publisher", "edition", "date", "document", "kind", "url", "pages")
@@ -96,7 +96,7 @@ class Manual(_Record):
 
 
 @dataclass(frozen=True)
-class DataType(_Record):
+class DataType(Record):
     """Data type: name and number in CiA 301, width in bits (0 for variable length), whether it has a sign."""
 
     __slots__ = ("name", "number", "bits", "signed")
@@ -138,7 +138,7 @@ DATA_TYPES = {
 
 
 @dataclass(frozen=True)
-class Access(_Record):
+class Access(Record):
     """Access to a code; ``conditions`` names the further boxes that the manual ticks ("cinh", "no_transfer", ...)."""
 
     __slots__ = ("read", "write", "conditions")
@@ -153,7 +153,7 @@ class Access(_Record):
 
 
 @dataclass(frozen=True)
-class Range(_Record):
+class Range(Record):
     """Range of the physical value, both ends included, in ``unit`` ("" where none is printed).
 
     The value on the bus is the physical value times the scaling of the code.
@@ -175,7 +175,7 @@ class Range(_Record):
 
 
 @dataclass(frozen=True)
-class NodeRelative(_Record):
+class NodeRelative(Record):
     """A value that follows the node address: ``base`` + node address."""
 
     __slots__ = ("base",)
@@ -198,7 +198,7 @@ class NodeRelative(_Record):
 
 
 @dataclass(frozen=True)
-class BitField(_Record):
+class BitField(Record):
     """Adjacent bits ``low`` ... ``high`` that form one number."""
 
     __slots__ = ("low", "high", "label")
@@ -228,7 +228,7 @@ class BitField(_Record):
 
 
 @dataclass(frozen=True)
-class CodeRef(_Record):
+class CodeRef(Record):
     """A code, with the subcode where one is meant; as text "C13372/2"."""
 
     __slots__ = ("number", "subcode")
@@ -242,7 +242,7 @@ class CodeRef(_Record):
 
 
 @dataclass(frozen=True)
-class ObjectRef(_Record):
+class ObjectRef(Record):
     """An object, with the sub-index where one is meant; as text "I-1800/1"."""
 
     __slots__ = ("index", "subindex")
@@ -256,7 +256,7 @@ class ObjectRef(_Record):
 
 
 @dataclass(frozen=True)
-class Slot(_Record):
+class Slot(Record):
     """A module slot: its run of codes, and what its numbers have more than those of the first slot."""
 
     __slots__ = ("name", "first_code", "last_code", "code_offset", "error_offset")
@@ -269,7 +269,7 @@ class Slot(_Record):
 
 
 @dataclass(frozen=True)
-class Drive(_Record):
+class Drive(Record):
     """The base drive; the index of a code is ``index_base`` minus its number.
 
     ``error_fields`` are the parts of a 32-bit error number, each with its name as label.
@@ -310,7 +310,7 @@ class Drive(_Record):
 
 
 @dataclass(frozen=True)
-class CanOpen(_Record):
+class CanOpen(Record):
     """CANopen properties that no object tells: bit rates in kbit/s, granularity of PDO mapping in bits, number of the
     code that holds the node address, and whether the device can be the NMT master."""
 
@@ -324,7 +324,7 @@ class CanOpen(_Record):
 
 
 @dataclass(frozen=True)
-class Device(_Record):
+class Device(Record):
     """A device; the versions are those from which its manual applies."""
 
     __slots__ = (
@@ -361,7 +361,7 @@ class Device(_Record):
 
 
 @dataclass(frozen=True)
-class SubCode(_Record):
+class SubCode(Record):
     """A subcode, which is addressed by the sub-index of the same number.
 
     Attributes:
@@ -397,7 +397,7 @@ class SubCode(_Record):
 
 
 @dataclass(frozen=True)
-class Code(_Record):
+class Code(Record):
     """A code, the parameter of a drive, in one slot.
 
     Attributes:
@@ -597,7 +597,7 @@ def _typed(selection: type[Selection] | None, flags: type[Flags] | None, raw: in
 
 
 @dataclass(frozen=True)
-class SubIndex(_Record):
+class SubIndex(Record):
     """A sub-index of an object.
 
     Attributes:
@@ -691,7 +691,7 @@ class SubIndex(_Record):
 
 
 @dataclass(frozen=True)
-class DictionaryObject(_Record):
+class DictionaryObject(Record):
     """An object of the object dictionary; of ``kind`` "profidrive" ``index`` is the parameter number (PNU).
 
     Attributes:
@@ -753,7 +753,7 @@ class DictionaryObject(_Record):
 
 
 @dataclass(frozen=True)
-class Error(_Record):
+class Error(Record):
     """An error number, or a run ``number`` ... ``last`` (equal for a single one).
 
     Attributes:
@@ -831,7 +831,7 @@ class Error(_Record):
 
 
 @dataclass(frozen=True)
-class ErratumPlace(_Record):
+class ErratumPlace(Record):
     """A place and what stands there; ``page`` is ``None`` where unknown."""
 
     __slots__ = ("location", "page", "manual", "printed")
@@ -843,7 +843,7 @@ class ErratumPlace(_Record):
 
 
 @dataclass(frozen=True)
-class Erratum(_Record):
+class Erratum(Record):
     """What a manual prints wrong, and what is used instead.
 
     Attributes:

@@ -108,7 +108,8 @@ TABLES: tuple[tuple[object, ...], ...] = (
         ("KHB-13.0002-EN-4.1", "4.4", 15), (),
     ),
     (
-        "can-frame", "other", "Basic structure of the CAN telegram", (("part", "Part", ""), ("length", "Length", "")),
+        "can-frame", "telegram", "Basic structure of the CAN telegram",
+        (("part", "Part", ""), ("length", "Length", "")),
         (
             ("Start", "1 bit"), ("Identifier", "11 bits"), ("RTR bit", "1 bit"), ("Control field", "2 bits"),
             ("Data length", "4 bits"), ("User data", "0 ... 8 bytes"), ("CRC sequence", "15 bits"),
@@ -138,7 +139,7 @@ TABLES: tuple[tuple[object, ...], ...] = (
         "manual", ("KHB-13.0002-EN-4.1", "5.1.2", 17), ("sdo-channels",),
     ),
     (
-        "user-data", "other", "User data",
+        "user-data", "telegram", "User data",
         (("kind", "Kind", ""), ("object", "Objects", ""), ("use", "Use", ""), ("stored", "Stored in the drive", "")),
         (
             ("Network management data", "NMT", "Network service, for example to all nodes at once", "-"),
@@ -265,7 +266,7 @@ TABLES: tuple[tuple[object, ...], ...] = (
         "public", ("KHB-13.0002-EN-4.1-azmanual", "5.9.1", 51), ("node-guarding-swapped",),
     ),
     (
-        "factor-group", "other", "Factor group",
+        "factor-group", "units", "Factor group",
         (
             ("quantity", "Quantity", ""), ("user", "User unit", ""), ("factor", "Factor", ""),
             ("index", "Object", ""), ("flag", "Sign", ""), ("internal", "Controller-internal unit", ""),
@@ -283,7 +284,7 @@ TABLES: tuple[tuple[object, ...], ...] = (
         "public", ("KHB-13.0002-EN-4.1-azmanual", "7.2.1", 72), ("factor-group-names",),
     ),
     (
-        "default-units", "other", "Units set by default",
+        "default-units", "units", "Units set by default",
         (
             ("quantity", "Quantity", ""), ("designation", "Designation", ""), ("unit", "Unit", ""),
             ("explanation", "Explanation", ""),
@@ -296,7 +297,7 @@ TABLES: tuple[tuple[object, ...], ...] = (
         (), "public", ("KHB-13.0002-EN-4.1-manualshelf", "7.2.1", 73), (),
     ),
     (
-        "position-factor-example", "other", "Example of the position factor",
+        "position-factor-example", "units", "Example of the position factor",
         (("step", "Step", ""), ("value", "Value", "")),
         (
             ("Unit required at the output end", "1 rev (position_unit)"), ("1 inc", "1/65535 rev"), ("Numerator", 1),
@@ -328,7 +329,7 @@ TABLES: tuple[tuple[object, ...], ...] = (
         "public", ("KHB-13.0002-EN-4.1-azmanual", "7.6.1", 82), ("following-error-window-index",),
     ),
     (
-        "trajectory-generator", "other", "Inputs of the trajectory generator",
+        "trajectory-generator", "parameters", "Inputs of the trajectory generator",
         (("input", "Input in figure 20", ""), ("by", "Converted by", ""), ("index", "Index printed", "")),
         (
             ("Target Position", "home_offset, position_factor, polarity", "607Ah, 6093h, 607Eh"),

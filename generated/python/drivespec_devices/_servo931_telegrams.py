@@ -8,7 +8,6 @@ from drivespec_devices import _telegram as base
 
 TYPE_CHECKING = False  # type checkers take it for True; it saves the time that importing typing costs
 if TYPE_CHECKING:
-    from collections.abc import Iterable
     from typing import Final
 
 
@@ -293,7 +292,6 @@ class Pdo(base.Telegram):
             DecodeError: The bytes are not this telegram.
         """
         data = bytes(memoryview(data))
-        size = len(data)
         data_ = data[0:]
         return cls(data=data_)
 

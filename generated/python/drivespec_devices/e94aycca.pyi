@@ -29,7 +29,7 @@ from drivespec_devices._e94aycca_telegrams import (
     Signature as Signature,
 )
 
-__all__ = (
+__all__: tuple[str, ...] = (
     "CODES", "DEVICE", "ERRATA", "ERRORS", "INDICATORS", "OBJECTS", "SWITCHES", "TABLES", "code", "code_by_name",
     "codes_at", "error", "errors_at", "object_at", "code_index", "index_code", "error_number", "error_parts",
     "INDEX_BASE", "C00369_CAN_SYNC_TRANSMISSION_CYCLE_TIME", "C00615_RESP_TO_IMP_DEVICE_CONFIG",

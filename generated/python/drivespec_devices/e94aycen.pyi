@@ -8,7 +8,7 @@ when they are first used.
 
 from typing import Final
 
-from drivespec_devices._enums import Flags, Selection
+from drivespec_devices._enums import Selection
 from drivespec_devices._panels import IndicatorTable, SwitchGroup, Table
 from drivespec_devices._records import Code, CodeRef, Device, DictionaryObject, Error, Erratum
 from drivespec_devices._e94aycen_telegrams import (
@@ -17,7 +17,7 @@ from drivespec_devices._e94aycen_telegrams import (
     Gci as Gci,
 )
 
-__all__ = (
+__all__: tuple[str, ...] = (
     "CODES", "DEVICE", "ERRATA", "ERRORS", "INDICATORS", "OBJECTS", "SWITCHES", "TABLES", "code", "code_by_name",
     "codes_at", "error", "errors_at", "object_at", "code_index", "index_code", "error_number", "error_parts",
     "INDEX_BASE", "C00615_RESP_TO_IMP_DEVICE_CONFIG", "C00636_RESP_TO_NEW_MODULE_IN_MXI1",

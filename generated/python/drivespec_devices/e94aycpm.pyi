@@ -33,7 +33,7 @@ from drivespec_devices._e94aycpm_telegrams import (
     Diagnosis as Diagnosis,
 )
 
-__all__ = (
+__all__: tuple[str, ...] = (
     "CODES", "DEVICE", "ERRATA", "ERRORS", "INDICATORS", "OBJECTS", "SWITCHES", "TABLES", "code", "code_by_name",
     "codes_at", "error", "errors_at", "object_at", "code_index", "index_code", "error_number", "error_parts",
     "INDEX_BASE", "C00615_RESP_TO_IMP_DEVICE_CONF", "C00636_RESP_TO_NEW_MODULE_IN_MXI1",

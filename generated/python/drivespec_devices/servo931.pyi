@@ -22,7 +22,7 @@ from drivespec_devices._servo931_telegrams import (
     Heartbeat as Heartbeat,
 )
 
-__all__ = (
+__all__: tuple[str, ...] = (
     "CODES", "DEVICE", "ERRATA", "ERRORS", "INDICATORS", "OBJECTS", "SWITCHES", "TABLES", "code", "code_by_name",
     "codes_at", "error", "errors_at", "object_at", "I1000_DEVICE_TYPE", "I1000_0_DEVICE_TYPE",
     "I1001_ERROR_REGISTER", "I1001_0_ERROR_REGISTER", "I1018_IDENTITY_OBJECT", "I1018_0_NUMBER_OF_ENTRIES",

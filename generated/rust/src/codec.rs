@@ -13,6 +13,8 @@ use core::fmt;
 
 /// Why bytes are no telegram of a layout; most variants name the field.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
 pub enum DecodeError {
     /// The bytes end before the field does.
@@ -54,6 +56,8 @@ impl std::error::Error for DecodeError {}
 
 /// Why values are no telegram; most variants name the field.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
 pub enum EncodeError {
     /// The value does not fit the bytes or bits of the field.

@@ -19,6 +19,8 @@ mod macros;
 pub mod cob_ids;
 pub mod codec;
 pub mod drives;
+#[cfg(any(feature = "serde", feature = "defmt"))]
+mod formats;
 pub mod types;
 
 #[cfg(feature = "e94aycca")]

@@ -15,6 +15,7 @@ macro_rules! selection {
     ) => {
         $(#[$attribute])*
         #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+        #[cfg_attr(feature = "defmt", derive(defmt::Format))]
         #[non_exhaustive]
         #[repr($repr)]
         pub enum $name {
@@ -64,6 +65,21 @@ macro_rules! selection {
         impl From<$name> for $repr {
             fn from(entry: $name) -> Self {
                 entry.raw()
+            }
+        }
+
+        #[cfg(feature = "serde")]
+        impl serde::Serialize for $name {
+            fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+                self.raw().serialize(serializer)
+            }
+        }
+
+        #[cfg(feature = "serde")]
+        impl<'de> serde::Deserialize<'de> for $name {
+            fn deserialize<D: serde::Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+                let raw = <$repr>::deserialize(deserializer)?;
+                Self::from_raw(raw).ok_or_else(|| serde::de::Error::custom($crate::types::UnknownValue { raw }))
             }
         }
     };

@@ -14,27 +14,39 @@ use core::fmt;
 
 /// Data type of a value on the bus, named as in CiA 301.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
 pub enum DataType {
     /// `UNSIGNED8`.
+    #[cfg_attr(feature = "serde", serde(rename = "UNSIGNED8"))]
     Unsigned8,
     /// `UNSIGNED16`.
+    #[cfg_attr(feature = "serde", serde(rename = "UNSIGNED16"))]
     Unsigned16,
     /// `UNSIGNED32`.
+    #[cfg_attr(feature = "serde", serde(rename = "UNSIGNED32"))]
     Unsigned32,
     /// `UNSIGNED64`.
+    #[cfg_attr(feature = "serde", serde(rename = "UNSIGNED64"))]
     Unsigned64,
     /// `INTEGER8`.
+    #[cfg_attr(feature = "serde", serde(rename = "INTEGER8"))]
     Integer8,
     /// `INTEGER16`.
+    #[cfg_attr(feature = "serde", serde(rename = "INTEGER16"))]
     Integer16,
     /// `INTEGER32`.
+    #[cfg_attr(feature = "serde", serde(rename = "INTEGER32"))]
     Integer32,
     /// `VISIBLE_STRING`.
+    #[cfg_attr(feature = "serde", serde(rename = "VISIBLE_STRING"))]
     VisibleString,
     /// `OCTET_STRING`.
+    #[cfg_attr(feature = "serde", serde(rename = "OCTET_STRING"))]
     OctetString,
     /// `DOMAIN`.
+    #[cfg_attr(feature = "serde", serde(rename = "DOMAIN"))]
     Domain,
 }
 
@@ -73,17 +85,24 @@ impl DataType {
 
 /// How a fact came to be known.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
 pub enum Origin {
     /// Printed in the manual cited.
+    #[cfg_attr(feature = "serde", serde(rename = "manual"))]
     Manual,
     /// Taken from a public standard.
+    #[cfg_attr(feature = "serde", serde(rename = "standard"))]
     Standard,
     /// Calculated from printed facts.
+    #[cfg_attr(feature = "serde", serde(rename = "derived"))]
     Derived,
     /// Documented nowhere, an assumption.
+    #[cfg_attr(feature = "serde", serde(rename = "assumed"))]
     Assumed,
     /// Printed in another public document.
+    #[cfg_attr(feature = "serde", serde(rename = "public"))]
     Public,
 }
 
@@ -106,21 +125,30 @@ impl Origin {
 
 /// What an LED does.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
 pub enum Light {
     /// Not said, or without meaning.
+    #[cfg_attr(feature = "serde", serde(rename = "any"))]
     Any,
     /// Off.
+    #[cfg_attr(feature = "serde", serde(rename = "off"))]
     Off,
     /// On.
+    #[cfg_attr(feature = "serde", serde(rename = "on"))]
     On,
     /// Flickering.
+    #[cfg_attr(feature = "serde", serde(rename = "flicker"))]
     Flicker,
     /// Lit or flickering; the manual draws no line between the two.
+    #[cfg_attr(feature = "serde", serde(rename = "on_or_flicker"))]
     OnOrFlicker,
     /// On and off for the same time.
+    #[cfg_attr(feature = "serde", serde(rename = "blink"))]
     Blink,
     /// Flashes and a pause.
+    #[cfg_attr(feature = "serde", serde(rename = "flash"))]
     Flash,
 }
 
@@ -146,11 +174,15 @@ impl Light {
 
 /// List that an object belongs to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
 pub enum ObjectKind {
     /// Object dictionary of CANopen.
+    #[cfg_attr(feature = "serde", serde(rename = "canopen"))]
     CanOpen,
     /// Parameters of PROFIdrive.
+    #[cfg_attr(feature = "serde", serde(rename = "profidrive"))]
     Profidrive,
 }
 
@@ -170,13 +202,18 @@ impl ObjectKind {
 
 /// Structure of an object.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
 pub enum ObjectType {
     /// `VAR` of CiA 301.
+    #[cfg_attr(feature = "serde", serde(rename = "VAR"))]
     Var,
     /// `ARRAY` of CiA 301.
+    #[cfg_attr(feature = "serde", serde(rename = "ARRAY"))]
     Array,
     /// `RECORD` of CiA 301.
+    #[cfg_attr(feature = "serde", serde(rename = "RECORD"))]
     Record,
 }
 
@@ -197,19 +234,27 @@ impl ObjectType {
 
 /// Access to a sub-index, in the terms of CiA 306.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
 pub enum EntryAccess {
     /// Reading alone.
+    #[cfg_attr(feature = "serde", serde(rename = "ro"))]
     Ro,
     /// Writing alone.
+    #[cfg_attr(feature = "serde", serde(rename = "wo"))]
     Wo,
     /// Reading and writing.
+    #[cfg_attr(feature = "serde", serde(rename = "rw"))]
     Rw,
     /// Reading alone; the value never changes.
+    #[cfg_attr(feature = "serde", serde(rename = "const"))]
     Const,
     /// Reading and writing; TPDOs may map it.
+    #[cfg_attr(feature = "serde", serde(rename = "rwr"))]
     Rwr,
     /// Reading and writing; RPDOs may map it.
+    #[cfg_attr(feature = "serde", serde(rename = "rww"))]
     Rww,
 }
 
@@ -286,6 +331,8 @@ impl DataType {
 
 /// A raw value that a selection list of the manual does not hold.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
 pub struct UnknownValue<T> {
     /// The value as it was read.
@@ -303,6 +350,8 @@ impl<T: fmt::Debug + fmt::Display> std::error::Error for UnknownValue<T> {}
 
 /// A value that a code cannot take.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
 pub struct OutOfRange;
 
@@ -317,6 +366,8 @@ impl std::error::Error for OutOfRange {}
 
 /// Place in a manual.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Cite {
     /// Id of the manual, for example of [`Manual::id`].
     pub manual: &'static str,
@@ -328,6 +379,8 @@ pub struct Cite {
 
 /// A manual that facts were taken from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Manual {
     /// Id, as in [`Cite::manual`].
     pub id: &'static str,
@@ -345,6 +398,8 @@ pub struct Manual {
 
 /// Entry of a list of values.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Choice {
     /// Wire value.
     pub value: i64,
@@ -354,6 +409,8 @@ pub struct Choice {
 
 /// A bit of a bit-coded value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Bit {
     /// Number of the bit, from 0.
     pub number: u8,
@@ -371,6 +428,8 @@ impl Bit {
 
 /// Adjacent bits that form one number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct BitField {
     /// Lowest bit, from 0.
     pub low: u8,
@@ -402,6 +461,8 @@ impl BitField {
 
 /// Setting or display range of wire values, both ends included.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Range {
     /// Lowest wire value.
     pub low: i64,
@@ -421,6 +482,8 @@ impl Range {
 
 /// A value that follows the node address.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct NodeRelative {
     /// What the node address is added to.
     pub base: u32,
@@ -445,6 +508,9 @@ impl NodeRelative {
 
 /// Default of a code or object.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", serde(untagged))]
 #[non_exhaustive]
 pub enum Value {
     /// Wire value.
@@ -469,6 +535,8 @@ impl Value {
 
 /// A code, or one subcode of it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct CodeRef {
     /// Number of the code.
     pub number: u16,
@@ -478,6 +546,8 @@ pub struct CodeRef {
 
 /// An object of the object dictionary, or one sub-index of it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct ObjectRef {
     /// Index of the object.
     pub index: u16,
@@ -487,6 +557,8 @@ pub struct ObjectRef {
 
 /// What may be done with a code.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Access {
     /// Reading.
     pub read: bool,
@@ -498,6 +570,8 @@ pub struct Access {
 
 /// A subcode; it is addressed by the sub-index of the same number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct SubCode {
     /// Number, from 1.
     pub number: u8,
@@ -518,6 +592,8 @@ impl SubCode {
 
 /// A code: a parameter of the drive.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Code {
     /// Number.
     pub number: u16,
@@ -644,6 +720,8 @@ impl Code {
 
 /// A sub-index of an object.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct SubIndex {
     /// Sub-index.
     pub number: u8,
@@ -700,6 +778,8 @@ impl SubIndex {
 
 /// An object of the object dictionary or a PROFIdrive parameter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Object {
     /// Which list it belongs to.
     pub kind: ObjectKind,
@@ -736,6 +816,8 @@ impl Object {
 
 /// An error number, or a run of them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct ErrorEntry {
     /// Number, of a run the first.
     pub number: u32,
@@ -780,6 +862,8 @@ impl ErrorEntry {
 
 /// What is said of an error to the person in front of the drive.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Help {
     /// Causes.
     pub causes: &'static [&'static str],
@@ -789,6 +873,8 @@ pub struct Help {
 
 /// A disagreement within the manual, or of the manual with a standard, and what is used.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Erratum {
     /// Id.
     pub id: &'static str,
@@ -812,6 +898,8 @@ pub struct Erratum {
 
 /// A place and what is printed there.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct ErratumPlace {
     /// Chapter, table or figure.
     pub location: &'static str,
@@ -825,6 +913,8 @@ pub struct ErratumPlace {
 
 /// A slot for a module.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Slot {
     /// Name.
     pub name: &'static str,
@@ -859,6 +949,8 @@ impl Slot {
 
 /// What a device does on CANopen beyond its objects.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct CanOpen {
     /// Bit rates in kbit/s.
     pub baud_rates: &'static [u16],
@@ -872,6 +964,8 @@ pub struct CanOpen {
 
 /// A field of the error number, by name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct ErrorField {
     /// Name: `response`, `module`, ...
     pub name: &'static str,
@@ -881,6 +975,8 @@ pub struct ErrorField {
 
 /// A base drive, which modules are plugged into.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Drive {
     /// Id.
     pub id: &'static str,
@@ -916,6 +1012,8 @@ impl Drive {
 
 /// An LED.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Led {
     /// Label on the module.
     pub label: &'static str,
@@ -927,6 +1025,8 @@ pub struct Led {
 
 /// What an LED does.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Pattern {
     /// Kind of light.
     pub light: Light,
@@ -962,6 +1062,8 @@ impl Pattern {
 
 /// A state that LEDs show.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct IndicatorRow {
     /// What each LED of the table does, in their order.
     pub patterns: &'static [Pattern],
@@ -977,6 +1079,8 @@ pub struct IndicatorRow {
 
 /// LEDs that are read together.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct IndicatorTable {
     /// Id.
     pub id: &'static str,
@@ -1005,6 +1109,8 @@ impl IndicatorTable {
 
 /// A printed position of DIP switches; bit n of a mask is switch n of [`SwitchGroup::labels`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct SwitchRow {
     /// What is set, as printed.
     pub value: &'static str,
@@ -1018,6 +1124,8 @@ pub struct SwitchRow {
 
 /// DIP switches that set one thing; bit n of a mask is switch n of `labels`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct SwitchGroup {
     /// Id.
     pub id: &'static str,
@@ -1080,6 +1188,8 @@ impl SwitchGroup {
 
 /// A COB-ID of the predefined connection set.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct CobId {
     /// Name.
     pub name: &'static str,
@@ -1091,6 +1201,8 @@ pub struct CobId {
 
 /// A device with everything that its manual says.
 #[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Device {
     /// Id, also the name of its module in this crate.
     pub id: &'static str,

@@ -62,7 +62,7 @@ def sections(model: Model, device: Device) -> tuple[Section, ...]:
     return tuple(Section(f"all-{kind}", title, tuple(map(_listed, kinds[kind]))) for kind, title in ordered)
 
 
-def overview(model: Model) -> tuple[DeviceLists, ...]:
+def listed(model: Model) -> tuple[DeviceLists, ...]:
     """Links to the lists of all devices."""
     return tuple(_lists(model, device) for device in model.devices)
 

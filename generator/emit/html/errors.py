@@ -26,9 +26,14 @@ def error_group(links: Links, name: str, kind: str, errors: Sequence[ErrorEntry]
     """Errors of a kind below one heading, those of several slots that differ in number alone drawn together."""
     return Group(
         id=name,
-        title=_KINDS.get(kind, kind),
+        title=kind_title(kind),
         overview=_overview(links, errors),
     )
+
+
+def kind_title(kind: str) -> str:
+    """Heading of the errors of a kind."""
+    return _KINDS.get(kind, kind)
 
 
 def _overview(links: Links, errors: Sequence[ErrorEntry]) -> Table:

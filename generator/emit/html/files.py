@@ -16,6 +16,7 @@ from generator.emit.canopen import (
     object_dictionaries,
 )
 from generator.emit.html.blocks import Fact, Row, Table
+from generator.emit.html.downloads import label_of, language_of, path_of
 from generator.emit.html.links import Links
 from generator.emit.html.notes import is_slip
 from generator.emit.html.text import NONE, Piece, Prose, hexadecimal, joined, noted, shown_origin, through
@@ -33,7 +34,6 @@ _COUNTED = (
     "Objects of each list, PDOs, values that an SDO can address, those that a PDO can carry, "
     "and defaults that follow the node-ID"
 )
-_LANGUAGES = {"en": "English", "de": "German"}
 _CONSISTENCIES = {Consistency.WORD: "each word", Consistency.WHOLE: "the whole module"}
 _UNPRINTED = {
     Origin.ASSUMED: "Assumed",
@@ -77,19 +77,6 @@ class _Line:
     source: Source
 
 
-def has_files(device: Device) -> bool:
-    """Whether the device has files for bus masters."""
-    return device.canopen is not None or device.gsd is not None
-
-
-def file_names(device: Device) -> tuple[str, ...]:
-    """Paths of all files of the device, as seen from the pages."""
-    dictionaries = object_dictionaries(device)
-    canopen = [path for found in dictionaries for path in (_eds_path(found), _xdd_path(found))]
-    profibus = gsd.file_names(device.gsd) if device.gsd else ()
-    return (*canopen, *(_gsd_path(name) for name, _ in profibus))
-
-
 def file_sections(links: Links) -> tuple[FileSection, ...]:
     """Sections for the files of the device.
 
@@ -104,15 +91,15 @@ def file_sections(links: Links) -> tuple[FileSection, ...]:
 
 
 def _eds_path(dictionary: ObjectDictionary) -> str:
-    return f"files/eds/{eds.file_name(dictionary)}"
+    return path_of(f"eds/{eds.file_name(dictionary)}")
 
 
 def _xdd_path(dictionary: ObjectDictionary) -> str:
-    return f"files/xdd/{xdd.file_name(dictionary)}"
+    return path_of(f"xdd/{xdd.file_name(dictionary)}")
 
 
 def _gsd_path(name: str) -> str:
-    return f"files/gsd/{name}"
+    return path_of(f"gsd/{name}")
 
 
 def _download(path: str) -> Prose:
@@ -141,12 +128,6 @@ def _canopen(links: Links, dictionaries: Sequence[ObjectDictionary]) -> FileSect
     )
 
 
-def _label(dictionary: ObjectDictionary) -> str:
-    """Slot and product, the device where there are neither."""
-    parts = (f"slot {dictionary.slot}" if dictionary.slot else "", dictionary.product.label)
-    return ", ".join(part for part in parts if part) or dictionary.device.title
-
-
 def _file_row(dictionary: ObjectDictionary) -> Row:
     product = dictionary.product
     numbers = (
@@ -156,7 +137,7 @@ def _file_row(dictionary: ObjectDictionary) -> Row:
     )
     identity = (noted(hexadecimal(n, _NUMBER_BITS), "assumed" if key in product.unknown else "") for key, n in numbers)
     return Row(
-        (_label(dictionary), _download(_eds_path(dictionary)), _download(_xdd_path(dictionary)), *identity),
+        (label_of(dictionary), _download(_eds_path(dictionary)), _download(_xdd_path(dictionary)), *identity),
     )
 
 
@@ -170,7 +151,7 @@ def _contents_row(dictionary: ObjectDictionary) -> Row:
         sum(entry.mappable for entry in entries),
         sum(map(_follows_node, entries)),
     )
-    return Row((_label(dictionary), *map(str, counts)))
+    return Row((label_of(dictionary), *map(str, counts)))
 
 
 def _follows_node(entry: Entry) -> bool:
@@ -189,7 +170,7 @@ def _statements(dictionaries: Sequence[ObjectDictionary]) -> Iterator[str]:
     said: dict[str, list[str]] = {}
     for dictionary in dictionaries:
         for sentence in (*eds.assumed(dictionary), *eds.left_out(dictionary)):
-            said.setdefault(sentence, []).append(_label(dictionary))
+            said.setdefault(sentence, []).append(label_of(dictionary))
     for sentence, labels in said.items():
         yield sentence if len(labels) == len(dictionaries) else f"{'; '.join(labels)}: {sentence}"
 
@@ -227,7 +208,7 @@ def _profibus(links: Links, facts: Gsd) -> FileSection:
         files=Table(
             "files",
             _FILES_GSD,
-            tuple(Row((_download(_gsd_path(name)), _LANGUAGES.get(language, language))) for name, language in names),
+            tuple(Row((_download(_gsd_path(name)), language_of(language))) for name, language in names),
         ),
         facts=tuple(_profibus_facts(links, facts)),
         contents=tuple(

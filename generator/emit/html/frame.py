@@ -5,11 +5,21 @@ from dataclasses import dataclass
 
 from generator.emit.html.coverage import edition
 from generator.emit.html.places import page_of
-from generator.emit.html.text import COVERAGE, Piece, Prose, manual_id, manual_link
+from generator.emit.html.text import CONTENTS, COVERAGE, DOWNLOADS, ERRATA, INDEX, Piece, Prose, manual_id, manual_link
 from generator.model import Device, Manual, Model
 
 _LONGEST_DESCRIPTION = 158
 """Search engines cut longer descriptions."""
+
+
+_SITE = (
+    Piece("All devices", INDEX),
+    Piece("All entries", CONTENTS),
+    Piece("Errata of all manuals", ERRATA),
+    Piece("Downloads", DOWNLOADS),
+    Piece("Coverage of the sources", COVERAGE),
+)
+"""Links at the foot of every page."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,7 +48,8 @@ class Frame:
 
     ``path``: its file.  ``title``: heading of the page, "" where its entry brings its own; ``head_title``: what the
     browser shows.  ``crumbs``: the way to it from the first page.  ``before`` and ``after``: neighbours in their list.
-    ``scripts``: names of the scripts beyond those of every page.
+    ``scripts``: names of the scripts beyond those of every page.  ``canonical``: full address of the page, "" where
+    that is not known.  ``site``: links at its foot.
     """
 
     path: str
@@ -53,6 +64,8 @@ class Frame:
     before: Piece | None = None
     after: Piece | None = None
     scripts: tuple[str, ...] = ()
+    canonical: str = ""
+    site: tuple[Piece, ...] = _SITE
 
 
 def origin(manuals: Iterable[Manual]) -> str:

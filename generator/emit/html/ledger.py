@@ -29,15 +29,25 @@ _PLACES = ("Place", "Prints", "Source")
 
 def ledger_groups(links: Links, errata: Sequence[Erratum]) -> tuple[Group, ...]:
     """The ledger by kind, in the order of the ledger; the slips of the dump come last."""
-    kinds: dict[str, list[Erratum]] = {}
-    for erratum in errata:
-        if not is_slip(erratum):
-            kinds.setdefault(erratum.kind, []).append(erratum)
-    groups = [_group(links, f"errata-{kind}", _KINDS.get(kind, kind), entries) for kind, entries in kinds.items()]
-    slips = [erratum for erratum in errata if is_slip(erratum)]
-    if slips:
-        groups.append(_group(links, "errata-dump", SLIPS, slips))
-    return tuple(groups)
+    groups: dict[str, list[Erratum]] = {}
+    for erratum in sorted(errata, key=is_slip):
+        groups.setdefault(group_id(erratum), []).append(erratum)
+    return tuple(_group(links, name, group_title(entries[0]), entries) for name, entries in groups.items())
+
+
+def group_id(erratum: Erratum) -> str:
+    """Anchor of the group that an entry stands in."""
+    return f"errata-{'dump' if is_slip(erratum) else erratum.kind}"
+
+
+def group_title(erratum: Erratum) -> str:
+    """Heading of the group that an entry stands in."""
+    return SLIPS if is_slip(erratum) else kind_title(erratum)
+
+
+def kind_title(erratum: Erratum) -> str:
+    """What kind of mistake it is, slips of the text dump as well."""
+    return _KINDS.get(erratum.kind, erratum.kind)
 
 
 def _group(links: Links, name: str, title: str, errata: Sequence[Erratum]) -> Group:
@@ -64,7 +74,7 @@ def erratum_entry(links: Links, erratum: Erratum) -> Entry:
         lead=links.prose(erratum.why),
         facts=tuple(_facts(erratum)),
         tables=(Table("places", _PLACES, places),) if places else (),
-        related=(Fact("Concerns", _concerns(links, erratum)),),
+        related=(Fact("Concerns", concerns(links, erratum)),),
     )
 
 
@@ -76,10 +86,10 @@ def _facts(erratum: Erratum) -> Iterator[Fact]:
     if erratum.rule is not None:
         yield Fact("Check", erratum.rule)
     if is_slip(erratum):
-        yield Fact("Kind", _KINDS.get(erratum.kind, erratum.kind))
+        yield Fact("Kind", kind_title(erratum))
 
 
-def _concerns(links: Links, erratum: Erratum) -> Prose:
+def concerns(links: Links, erratum: Erratum) -> Prose:
     """Links to what the ledger names, after its own words where those are other words."""
     codes = [subject for subject in erratum.about if isinstance(subject, CodeRef)]
     objects = [subject for subject in erratum.about if isinstance(subject, ObjectRef)]

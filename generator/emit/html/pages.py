@@ -4,27 +4,38 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import partial
 
-from generator.emit.html.blocks import Entry, Fact, Group, Row, Table
+from generator.emit.html.blocks import Entry, Fact, Group
 from generator.emit.html.codenames import code_names, object_names
 from generator.emit.html.codes import code_entry, code_group
-from generator.emit.html.contents import PART, DeviceLists, Section, overview, sections
-from generator.emit.html.coverage import Coverage, coverage, edition, listed_sources
+from generator.emit.html.contents import PART, DeviceLists, Section, listed, sections
+from generator.emit.html.coverage import Coverage, coverage
+from generator.emit.html.downloads import (
+    DownloadGroup,
+    Offered,
+    all_downloads,
+    device_downloads,
+    packages,
+)
 from generator.emit.html.drive import DriveSection, drive_section
+from generator.emit.html.errata import all_errata
 from generator.emit.html.errors import error_entry, error_group
-from generator.emit.html.files import FileSection, file_names, file_sections, has_files
+from generator.emit.html.files import FileSection, file_sections
+from generator.emit.html.filters import SCRIPT as FILTER
+from generator.emit.html.filters import Filter, filter_of
 from generator.emit.html.frame import Frame, NavItem, coverage_item, device_frame, site_frame
+from generator.emit.html.home import home, not_found
 from generator.emit.html.ledger import ledger_groups
 from generator.emit.html.links import Links
 from generator.emit.html.objects import object_entry, object_group
+from generator.emit.html.overview import overview
 from generator.emit.html.panel import led_group, switch_group
-from generator.emit.html.places import code_entries, code_id, error_entries, error_id, object_id, page_of
-from generator.emit.html.tables import formula_group, table_group
+from generator.emit.html.places import code_entries, code_id, error_entries, error_id, errors_group, object_id, page_of
+from generator.emit.html.tables import formula_group, table_groups
 from generator.emit.html.telegrams import example_group, layout_group
-from generator.emit.html.text import COVERAGE, NONE, Piece, joined, manual_link, plain, through
-from generator.model import Code, CodeRef, Device, DictionaryObject, ErrorEntry, Model
+from generator.emit.html.text import CONTENTS, COVERAGE, DOWNLOADS, ERRATA, INDEX, NONE, NOT_FOUND, Piece, plain
+from generator.model import Code, Device, DictionaryObject, ErrorEntry, Model
 
 _OBJECT_KINDS = {"canopen": "CANopen object dictionary", "profidrive": "PROFIdrive parameters"}
-_DEVICES = ("Device", "Type", "Bus", "Manual", "Edition", "Codes", "Objects", "Errors", "Errata", "Files")
 _TITLES = {
     "": "Overview",
     "codes": "Codes",
@@ -36,7 +47,7 @@ _TITLES = {
     "tables": "Tables",
     "drive": "Base drive",
     "errata": "Errata",
-    "files": "Files for bus masters",
+    "files": "Downloads",
 }
 """Parts of the reference of a device in the order of its navigation."""
 _LEADS = {
@@ -45,8 +56,8 @@ _LEADS = {
     "telegrams": "Offsets count bytes from 0; bit 0 is the least significant.",
     "errata": "What is printed wrong, what is used instead, why, and how sure that is.",
 }
-_WITH_PAGES = ("codes", "objects", "errors")
-"""Parts whose entries have a page of their own each."""
+_FILTERED = {"codes": ("Data type", "Access"), "objects": ("Type",), "errors": ("Response",)}
+"""Parts whose entries have a page of their own each, with the columns by which their overviews are filtered."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,13 +76,7 @@ class PartView:
     lead: str
     groups: tuple[Group, ...]
     blinks: bool
-
-
-@dataclass(frozen=True, slots=True)
-class DeviceView:
-    """The overview of a device."""
-
-    facts: tuple[Fact, ...]
+    filter: Filter | None
 
 
 @dataclass(frozen=True, slots=True)
@@ -84,8 +89,9 @@ class EntryView:
 
 @dataclass(frozen=True, slots=True)
 class FilesView:
-    """Files of a device for bus masters."""
+    """Files of a device: where to get them, and what is in those for bus masters."""
 
+    downloads: tuple[DownloadGroup, ...]
     sections: tuple[FileSection, ...]
 
 
@@ -94,14 +100,6 @@ class DriveView:
     """What is known of the base drive of a device."""
 
     drive: DriveSection
-
-
-@dataclass(frozen=True, slots=True)
-class IndexView:
-    """Everything on the first page."""
-
-    devices: Table
-    sources: Table
 
 
 @dataclass(frozen=True, slots=True)
@@ -125,21 +123,43 @@ class CoverageView:
     coverage: Coverage
 
 
-def pages(model: Model) -> Iterator[Page]:
-    """Every page of the reference."""
-    yield _index(model)
+def pages(model: Model, offered: Offered) -> Iterator[Page]:
+    """Every page of the reference; ``offered`` are the files beside it."""
+    devices = [Links(device) for device in model.devices]
+    yield _index(model, devices)
     yield _coverage(model)
+    yield _errata(model, devices)
+    yield _downloads(model, offered)
+    yield _not_found(model, devices)
     yield _contents(model)
-    for device in model.devices:
-        yield from _device_pages(model, device)
+    for links in devices:
+        yield from _device_pages(model, links, offered)
 
 
-def _index(model: Model) -> Page:
+def _index(model: Model, devices: Sequence[Links]) -> Page:
     title = "Drive communication modules, transcribed"
     names = ", ".join(device.title for device in model.devices)
-    frame = site_frame(model, "index.html", title, f"Codes, objects, errors, LEDs, switches and telegrams of {names}.")
-    view = IndexView(Table("devices", _DEVICES, tuple(map(_device_row, model.devices))), listed_sources(model))
-    return Page(frame, "index", view)
+    frame = site_frame(model, INDEX, title, f"Codes, objects, errors, LEDs, switches and telegrams of {names}.")
+    return Page(frame, "index", home(model, [links.on(frame.path) for links in devices]))
+
+
+def _errata(model: Model, devices: Sequence[Links]) -> Page:
+    description = "What the manuals print wrong, what is used instead and how sure that is, by manual and by kind."
+    frame = site_frame(model, ERRATA, "Errata of all manuals", description, scripts=(FILTER,))
+    return Page(frame, "errata", all_errata([links.on(frame.path) for links in devices]))
+
+
+def _downloads(model: Model, offered: Offered) -> Page:
+    description = "EDS, XDD, GSD and JSON files, C, Python and Rust libraries, with sizes and SHA-256 digests."
+    frame = site_frame(model, DOWNLOADS, "Downloads", description)
+    return Page(frame, "downloads", FilesView(all_downloads(model, offered), ()))
+
+
+def _not_found(model: Model, devices: Sequence[Links]) -> Page:
+    frame = site_frame(
+        model, NOT_FOUND, "There is no such page", "The address leads nowhere; ways to what you look for."
+    )
+    return Page(frame, "404", not_found([links.on(frame.path) for links in devices]))
 
 
 def _coverage(model: Model) -> Page:
@@ -150,29 +170,15 @@ def _coverage(model: Model) -> Page:
 
 def _contents(model: Model) -> Page:
     title = "All entries"
-    frame = site_frame(
-        model, "contents.html", title, "Lists of every code, object, error and other entry of all devices."
+    frame = site_frame(model, CONTENTS, title, "Lists of every code, object, error and other entry of all devices.")
+    return Page(frame, "contents", ContentsView(listed(model)))
+
+
+def _device_pages(model: Model, links: Links, offered: Offered) -> Iterator[Page]:
+    device = links.device
+    files = FilesView(
+        (*device_downloads(device, offered), *packages(offered)), file_sections(links.on(page_of(device, "files")))
     )
-    return Page(frame, "contents", ContentsView(overview(model)))
-
-
-def _device_row(device: Device) -> Row:
-    facts = {"codes": device.codes, "objects": device.objects, "errors": device.errors, "errata": device.errata}
-    return Row(
-        (
-            (Piece(device.title, page_of(device)),),
-            device.order_code,
-            device.bus,
-            (manual_link(device.manual.id),),
-            edition(device.manual),
-            *((Piece(str(len(found)), page_of(device, part)),) if found else NONE for part, found in facts.items()),
-            (Piece(str(len(file_names(device))), page_of(device, "files")),) if has_files(device) else NONE,
-        )
-    )
-
-
-def _device_pages(model: Model, device: Device) -> Iterator[Page]:
-    links = Links(device)
     parts = {part: groups for part in _TITLES if (groups := _groups(links.on(page_of(device, part)), part))}
     counts = {
         "codes": len(device.codes),
@@ -180,16 +186,21 @@ def _device_pages(model: Model, device: Device) -> Iterator[Page]:
         "errors": len(device.errors),
         "errata": len(device.errata),
     }
-    known = {"", *parts, *(["drive"] if device.drive else []), *(["files"] if has_files(device) else [])}
+    known = {
+        "",
+        *parts,
+        *(["drive"] if device.drive else []),
+        *(["files"] if files.downloads or files.sections else []),
+    }
     nav = [
         NavItem(title, page_of(device, part), str(counts.get(part, "")))
         for part, title in _TITLES.items()
         if part in known
     ]
     nav.append(coverage_item(device))
-    overview = f"{device.title} ({device.order_code}): codes, objects, errors, LEDs, switches and telegrams."
-    frame = device_frame(model, device, nav, title=device.title, description=overview)
-    yield Page(frame, "device", DeviceView(tuple(_facts(links.on(page_of(device)), device))))
+    brief = f"{device.title} ({device.order_code}): codes, objects, errors, LEDs, switches and telegrams."
+    frame = device_frame(model, device, nav, title=device.title, description=brief)
+    yield Page(frame, "device", overview(links.on(page_of(device)), offered))
     everything = sections(model, device)
     if everything:
         description = f"Every number and name of the {device.title} on one page."
@@ -198,21 +209,30 @@ def _device_pages(model: Model, device: Device) -> Iterator[Page]:
     for part, groups in parts.items():
         title = _TITLES[part]
         names = ", ".join(dict.fromkeys(group.title for group in groups))
+        found = filter_of(groups, _FILTERED[part]) if part in _FILTERED else None
         frame = device_frame(
-            model, device, nav, part=part, title=title, description=f"{title} of the {device.title}: {names}."
+            model,
+            device,
+            nav,
+            part=part,
+            title=title,
+            description=f"{title} of the {device.title}: {names}.",
+            scripts=(FILTER,) if found else (),
         )
-        yield Page(frame, "part", PartView(_LEADS.get(part, ""), groups, blinks=part == "leds"))
-        if part in _WITH_PAGES:
+        yield Page(frame, "part", PartView(_LEADS.get(part, ""), groups, blinks=part == "leds", filter=found))
+        if part in _FILTERED:
             yield from _entry_pages(model, links, nav, part)
     if device.drive:
         frame = device_frame(
-            model, device, nav, part="drive", title=device.drive.title, description=f"{device.drive.title}: {overview}"
+            model, device, nav, part="drive", title=device.drive.title, description=f"{device.drive.title}: {brief}"
         )
         yield Page(frame, "drive", DriveView(drive_section(links.on(frame.path), device.drive)))
-    if has_files(device):
-        description = f"EDS, XDD and GSD files of the {device.title}: contents, assumptions, corrections and import."
+    if "files" in known:
+        description = (
+            f"Downloads for the {device.title}: files for bus masters, libraries and data, and what is in them."
+        )
         frame = device_frame(model, device, nav, part="files", title=_TITLES["files"], description=description)
-        yield Page(frame, "files", FilesView(file_sections(links.on(frame.path))))
+        yield Page(frame, "files", files)
 
 
 def _entry_pages(model: Model, links: Links, nav: Sequence[NavItem], part: str) -> Iterator[Page]:
@@ -280,36 +300,12 @@ def _groups(links: Links, part: str) -> tuple[Group, ...]:
         case "telegrams":
             groups = [layout_group(links, device.layouts), example_group(links, device.examples)]
         case "tables":
-            groups = [table_group(links, device.tables), formula_group(links, device.formulas)]
+            groups = [*table_groups(links, device.tables), formula_group(links, device.formulas)]
         case "errata":
             return ledger_groups(links, device.errata)
         case _:
             return ()
     return tuple(group for group in groups if group.entries)
-
-
-def _facts(links: Links, device: Device) -> Iterator[Fact]:
-    yield Fact("Type", device.order_code)
-    yield Fact("Maker", device.manufacturer)
-    yield Fact("Fieldbus", device.bus)
-    if device.drive:
-        yield Fact("Base drive", (Piece(device.drive.title, page_of(device, "drive")),))
-    if device.hardware_version:
-        yield Fact("Hardware from", device.hardware_version)
-    if device.software_version:
-        yield Fact("Software from", device.software_version)
-    for slot in device.slots:
-        yield Fact(f"Slot {slot.name}", through(str(CodeRef(slot.first_code)), str(CodeRef(slot.last_code))))
-    cites = [device.cite]
-    can = device.canopen
-    if can:
-        yield Fact("Bit rates", f"{', '.join(map(str, can.baud_rates))} kbit/s")
-        yield Fact("PDO granularity", f"{can.granularity} bit")
-        yield Fact("Can be NMT master", "yes" if can.boot_up_master else "no")
-        cites.append(can.cite)
-    if can and can.node_address is not None:
-        yield Fact("Node address in", (links.code(CodeRef(can.node_address)),))
-    yield Fact("Sources" if len(cites) > 1 else "Source", joined([links.source(cite) for cite in cites], "; "))
 
 
 def _code_groups(links: Links, codes: Sequence[Code]) -> tuple[Group, ...]:
@@ -332,4 +328,4 @@ def _error_groups(links: Links, errors: Sequence[ErrorEntry]) -> tuple[Group, ..
     kinds: dict[str, list[ErrorEntry]] = {}
     for error in errors:
         kinds.setdefault(error.kind, []).append(error)
-    return tuple(error_group(links, f"errors-{kind.replace('_', '-')}", kind, found) for kind, found in kinds.items())
+    return tuple(error_group(links, errors_group(kind), kind, found) for kind, found in kinds.items())

@@ -44,6 +44,11 @@ def error_id(kind: str, number: int) -> str:
     return f"{_ERROR_PREFIXES.get(kind, kind)}-{error_text(kind, number)}"
 
 
+def errors_group(kind: str) -> str:
+    """Anchor of the errors of a kind among those of a device: ``errors-sdo-abort``."""
+    return f"errors-{kind.replace('_', '-')}"
+
+
 def erratum_id(erratum: str) -> str:
     """Anchor of an entry of the ledger."""
     return f"erratum-{erratum}"

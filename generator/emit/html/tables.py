@@ -7,6 +7,7 @@ from generator.emit.html.links import Links
 from generator.emit.html.notes import named_subject, notes
 from generator.emit.html.places import named_id
 from generator.emit.html.text import NONE, Piece, Prose, shown_origin
+from generator.emit.html.topics import by_topic, title_of
 from generator.model import Column, Formula
 from generator.model import Table as PrintedTable
 
@@ -16,11 +17,12 @@ _OVERVIEW = ("Table", "Name", "Of", "Rows")
 _FORMULAS = ("Formula", "Name", "Expression")
 
 
-def table_group(links: Links, tables: Sequence[PrintedTable]) -> Group:
-    """Tables below one heading."""
-    rows = tuple(Row((links.anchored(_table_anchor(t)), t.name, _kind(t), str(len(t.rows)))) for t in tables)
-    entries = tuple(table_entry(links, table) for table in tables)
-    return Group("tables-all", "All tables", Table("overview", _OVERVIEW, rows), entries)
+def table_groups(links: Links, tables: Sequence[PrintedTable]) -> Iterator[Group]:
+    """Tables by topic."""
+    for topic, found in by_topic(tables).items():
+        rows = tuple(Row((links.anchored(_table_anchor(t)), t.name, _kind(t), str(len(t.rows)))) for t in found)
+        entries = tuple(table_entry(links, table) for table in found)
+        yield Group(f"tables-{topic}", title_of(topic), Table("overview", _OVERVIEW, rows), entries)
 
 
 def _kind(table: PrintedTable) -> str:
@@ -35,7 +37,6 @@ def table_entry(links: Links, table: PrintedTable) -> Entry:
     """Entry for a table."""
     origin = shown_origin(table.origin)
     remarks = Bullets("Notes", tuple(map(links.prose, table.notes)))
-    rows = tuple(_row(links, table, number, cells) for number, cells in enumerate(table.rows, 1))
     return Entry(
         kind="table",
         anchors=(_table_anchor(table),),
@@ -43,18 +44,23 @@ def table_entry(links: Links, table: PrintedTable) -> Entry:
         marks=(origin,) if origin else (),
         lead="",
         facts=(Fact("Table of", _kind(table)), Fact("Source", links.source(table.cite))),
-        tables=(Table("printed", tuple(map(_heading, table.columns)), rows),),
+        tables=(printed_table(links, table),),
         bullets=(remarks,) if remarks.items else (),
         notes=notes(links, [named_subject(table.errata)]),
     )
 
 
+def printed_table(links: Links, table: PrintedTable, anchored: bool = True) -> Table:
+    """The columns and rows of a table; ``anchored``: its rows have their anchors here."""
+    ids = (named_id("table", table.id, str(number)) if anchored else "" for number in range(1, len(table.rows) + 1))
+    rows = (
+        Row(tuple(_cell(links, cell) for cell in cells), id=row) for cells, row in zip(table.rows, ids, strict=True)
+    )
+    return Table("printed", tuple(map(_heading, table.columns)), tuple(rows))
+
+
 def _heading(column: Column) -> str:
     return f"{column.name} [{column.unit}]" if column.unit else column.name
-
-
-def _row(links: Links, table: PrintedTable, number: int, cells: Sequence[int | str]) -> Row:
-    return Row(tuple(_cell(links, cell) for cell in cells), id=named_id("table", table.id, str(number)))
 
 
 def _cell(links: Links, cell: int | str) -> Prose:

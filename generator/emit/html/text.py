@@ -13,8 +13,23 @@ NONE = "\N{EN DASH}"
 ELLIPSIS = "\N{HORIZONTAL ELLIPSIS}"
 """Stands between the ends of a run or range."""
 
+INDEX = "index.html"
+"""First page."""
+
 COVERAGE = "coverage.html"
 """Page of the sources."""
+
+CONTENTS = "contents.html"
+"""Page that lists everything, device by device."""
+
+DOWNLOADS = "downloads.html"
+"""Page of all files to take away."""
+
+ERRATA = "errata.html"
+"""Page of the errata of all manuals."""
+
+NOT_FOUND = "404.html"
+"""Page that a host shows for addresses that lead nowhere."""
 
 _NO_BREAK = "\N{NO-BREAK SPACE}"
 

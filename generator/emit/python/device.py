@@ -78,6 +78,7 @@ class DeviceBuilder:
             has_error_fields=drive is not None and bool(drive.error_fields),
             groups=groups,
             enums=self._enums.views,
+            enum_bases=", ".join(sorted({enum.base for enum in self._enums.views})),
             telegrams=telegrams,
             telegram_names=fill(classes),
             exported=fill((*functions, *constants, *classes, *(enum.name for enum in self._enums.views))),

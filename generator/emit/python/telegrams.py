@@ -1,5 +1,6 @@
 """Classes of telegrams: the fields of a layout, and the code that reads and writes their bytes."""
 
+import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
 
 from generator.emit import names
@@ -22,6 +23,7 @@ _TAKEN = frozenset(("base", "bytes", "classmethod", "decode", "encode", "int", "
 _FREE = frozenset(("case", "match", "mro", "name", "type", "value"))
 """Names that only enums and statements reserve."""
 
+_SIZE = re.compile(r"\bsize\b")
 _LOCALS = frozenset(("at", "cls", "data", "found", "length", "size"))
 """Names that ``decode`` needs for itself."""
 
@@ -51,7 +53,13 @@ class Telegrams:
             SizesView(name, wrap((f"{by}: {size}," for by, size in sizes), _WIDTH))
             for sizes, name in self._sizes.items()
         )
-        return TelegramsView(tables, classes)
+        fields = [field for layout in self._device.layouts for field in _all_fields(layout.fields)]
+        return TelegramsView(
+            has_constants=any(field.constant is not None for field in fields),
+            has_groups=any(field.type is FieldType.GROUP for field in fields),
+            sizes=tables,
+            classes=classes,
+        )
 
     def _layout(self, layout: Layout) -> Iterator[TelegramClassView]:
         name = self._scope.add(class_name(layout), layout.where)
@@ -131,6 +139,13 @@ def _type(owner: str, field: Field) -> str:
     if field.type is FieldType.GROUP:
         return f"list[{_group_class(owner, field)}]"
     return {FieldType.BYTES: "bytes", FieldType.TEXT: "str"}.get(field.type, "int")
+
+
+def _all_fields(fields: Sequence[Field]) -> Iterator[Field]:
+    """The fields and those of groups within them."""
+    for field in fields:
+        yield field
+        yield from _all_fields(field.fields)
 
 
 def _derived(fields: Sequence[Field]) -> dict[str, str]:
@@ -235,13 +250,15 @@ class _Decoder(_Coder):
 
     def telegram(self, name: str, fields: Sequence[Field]) -> Iterator[str]:
         """Body of the method."""
-        yield "data = bytes(memoryview(data))"
-        yield "size = len(data)"
         values: Names = {}
-        yield from self._fields(name, fields, values, {})
+        lines = list(self._fields(name, fields, values, {}))
         if not (fields and fields[-1].length is None and fields[-1].sizes is None and fields[-1].count is None):
-            yield f"if size != {self._place()}:"
-            yield f"{_INDENT}raise base.trailing(size - {self._place(inner=True)})"
+            lines.append(f"if size != {self._place()}:")
+            lines.append(f"{_INDENT}raise base.trailing(size - {self._place(inner=True)})")
+        yield "data = bytes(memoryview(data))"
+        if any(_SIZE.search(line) for line in lines):
+            yield "size = len(data)"
+        yield from lines
         yield from _call("return cls(", _keywords(values))
 
     def _place(self, further: int = 0, *, inner: bool = False) -> str:
@@ -312,7 +329,7 @@ class _Decoder(_Coder):
         """Loop over the entries of a group."""
         variable = values[field_name(field)] = self._names.new(field)
         entry = _group_class(owner, field)
-        yield f"{variable} = []"
+        yield f"{variable}: list[{entry}] = []"
         if self._place() != "at":
             yield f"at = {self._place()}"
         if field.count is not None:

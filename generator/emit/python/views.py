@@ -147,8 +147,10 @@ class VectorView:
 
 @dataclass(frozen=True, slots=True)
 class TelegramsView:
-    """The telegrams of a device."""
+    """The telegrams of a device; whether any has constants, or groups that repeat."""
 
+    has_constants: bool
+    has_groups: bool
     sizes: tuple[SizesView, ...]
     classes: tuple[TelegramClassView, ...]
 
@@ -172,6 +174,7 @@ class DeviceView:
     has_error_fields: bool
     groups: tuple[GroupView, ...]
     enums: tuple[EnumView, ...]
+    enum_bases: str
     telegrams: TelegramsView
     telegram_names: tuple[str, ...]
     exported: tuple[str, ...]

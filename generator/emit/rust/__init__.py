@@ -19,7 +19,7 @@ from generator.emit.rust.views import DataTypeFigures, Module, Record, TypeEnum,
 from generator.model import DataType, Light, Model, Origin
 from generator.naming import Scope, safe, snake
 
-_OWN_MODULES = ("cob_ids", "codec", "default", "drives", "macros", "std", "types")
+_OWN_MODULES = ("cob_ids", "codec", "default", "defmt", "drives", "formats", "macros", "serde", "std", "types")
 """Modules and features that are no devices."""
 _ORIGINS = {
     Origin.MANUAL: "Printed in the manual cited.",
@@ -56,7 +56,8 @@ def render(model: Model) -> Mapping[str, Output]:
     """
     modules = _device_modules(model)
     devices = [DeviceFiles(model, device, modules[device.id]) for device in model.devices]
-    files = _crate_files(model, [device.module for device in devices], *example(devices))
+    with_telegrams = [device.module for device in devices if device.device.layouts]
+    files = _crate_files(model, [device.module for device in devices], with_telegrams, *example(devices))
     for drive in model.drives:
         files[f"src/drives/{drive_module(drive)}.rs"] = drive_file(model, drive)
     for device in devices:
@@ -76,7 +77,11 @@ def _device_modules(model: Model) -> dict[str, str]:
 
 
 def _crate_files(
-    model: Model, modules: Sequence[Module], example_module: str, example_lines: Sequence[str]
+    model: Model,
+    modules: Sequence[Module],
+    with_telegrams: Sequence[Module],
+    example_module: str,
+    example_lines: Sequence[str],
 ) -> dict[str, str]:
     manuals = list({device.manual.id: device.manual for device in model.devices}.values())
     head = notice(model, manuals)
@@ -87,6 +92,9 @@ def _crate_files(
             version=model.version,
             modules=modules,
             features=", ".join(string(module.name) for module in modules),
+        ),
+        "fuzz/Cargo.toml": fill(
+            "rust/fuzz.toml.j2", notice=notice(model, manuals, "#"), version=model.version, modules=with_telegrams
         ),
         "README.md": fill(
             "rust/README.md.j2", version=model.version, date=model.date, modules=modules, example=example_lines
@@ -102,6 +110,7 @@ def _crate_files(
         ),
         "src/cob_ids.rs": _cob_ids(model, head),
         "src/codec.rs": fill("rust/codec.rs.j2", notice=head),
+        "src/formats.rs": fill("rust/formats.rs.j2", notice=head),
         "src/macros.rs": fill("rust/macros.rs.j2", notice=head),
         "src/types.rs": _types(head),
         "src/drives.rs": fill("rust/drives.rs.j2", notice=head, drives=sorted(map(drive_module, model.drives))),

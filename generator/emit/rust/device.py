@@ -30,7 +30,7 @@ from generator.emit.rust.syntax import (
     struct,
 )
 from generator.emit.rust.telegrams import Telegrams
-from generator.emit.rust.vectors import vector_file
+from generator.emit.rust.vectors import fuzz_file, vector_file
 from generator.emit.rust.views import Error, Module, Record
 from generator.model import Code, Device, DictionaryObject, Erratum, ErrorEntry, Model, SubIndex
 from generator.naming import Scope
@@ -100,7 +100,7 @@ class DeviceFiles:
             f"{folder}.rs": self._device(sorted(files)),
             **{f"{folder}/{part}.rs": text for part, text in files.items()},
             **{f"{folder}/errors/{kind}.rs": self._error_kind(kind) for kind in self.error_tables},
-            **({f"tests/{self.module.name}.rs": self._vectors()} if device.layouts else {}),
+            **(self._tests() if device.layouts else {}),
         }
 
     def error_mask(self, kind: str) -> int:
@@ -111,8 +111,12 @@ class DeviceFiles:
     def _fill(self, template: str, **view: object) -> str:
         return render(f"rust/{template}.rs.j2", notice=self._notice, title=self.module.title, **view)
 
-    def _vectors(self) -> str:
-        return vector_file(self.device, self.module.name, self.module.title, self._notice)
+    def _tests(self) -> dict[str, str]:
+        name = self.module.name
+        return {
+            f"tests/{name}.rs": vector_file(self.device, name, self.module.title, self._notice),
+            f"fuzz/fuzz_targets/{name}.rs": fuzz_file(self.device, name, self._notice),
+        }
 
     def _device(self, parts: Sequence[str]) -> str:
         comment = doc([words.headline(self.device.title)], words.device_points(self.device, self.module.manual), "//!")

@@ -34,11 +34,20 @@ def vector_file(device: Device, module: str, title: str, notice: str) -> str:
         module=module,
         groups=groups and bool(vectors),
         vectors=vectors,
-        random=[
-            RandomTest(safe(snake(layout.id), "rust"), telegram_name(layout), str(_size(layout.fields)))
-            for layout in device.layouts
-        ],
+        random=_random(device),
     )
+
+
+def fuzz_file(device: Device, module: str, notice: str) -> str:
+    """Text of the fuzz target of a device that has layouts."""
+    return render("rust/fuzz.rs.j2", notice=notice, module=module, telegrams=_random(device))
+
+
+def _random(device: Device) -> list[RandomTest]:
+    return [
+        RandomTest(safe(snake(layout.id), "rust"), telegram_name(layout), str(_size(layout.fields)))
+        for layout in device.layouts
+    ]
 
 
 def filled(layout: Layout, data: Sequence[int | None]) -> bytes:

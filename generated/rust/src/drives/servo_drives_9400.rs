@@ -187,6 +187,8 @@ pub const ERROR_ERROR: BitField = BitField { low: 0, high: 15, label: "error" };
 
 /// An error number, made of fields.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct ErrorNumber(pub u32);
 
 impl ErrorNumber {

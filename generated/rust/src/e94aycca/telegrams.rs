@@ -27,6 +27,8 @@ use crate::codec::{self, DecodeError, EncodeError, Layout, Reader, Writer};
 /// - Erratum `sdo-three-bytes`: printed 9.2.1, coding of the length: 01 = 3 bytes; 9.2.1, commands: 4 bytes, 2 bytes, 1
 ///   byte, Block; 9.2.3, parameter value: 1 byte, 2 bytes, 4 bytes, used 1, 2 or 4 bytes
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Sdo {
     /// Command.
     ///
@@ -222,6 +224,8 @@ impl Sdo {
 /// - Protocol: SDO
 /// - Source: EDS94AYCCA-EN-5.0, 9.3.3 p. 72
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct SdoSegmentRequest {
     /// Command.
     pub command: u8,
@@ -337,6 +341,8 @@ impl SdoSegmentRequest {
 /// - Protocol: SDO
 /// - Source: EDS94AYCCA-EN-5.0, 9.3.3 p. 72
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct SdoSegmentResponse<'a> {
     /// Command.
     pub command: u8,
@@ -464,6 +470,8 @@ impl<'a> SdoSegmentResponse<'a> {
 /// - Erratum `motorola-format`: printed 9.2, note: Motorola format; 9.2, table: Low byte, High byte; Low word, High
 ///   word; 9.3.1, example: index 0x5FC2 as 0xC2 0x5F, used low byte first
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct SdoError {
     /// Index.
     pub index: u16,
@@ -531,6 +539,8 @@ impl SdoError {
 /// - Protocol: NMT
 /// - Source: EDS94AYCCA-EN-5.0, 7.2.2 p. 43
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Nmt {
     /// Command specifier (cs).
     pub command: u8,
@@ -604,6 +614,8 @@ impl Nmt {
 /// - Source: EDS94AYCCA-EN-5.0, 10.1.1 p. 75
 /// - Erratum `rtr-level`: printed 10.1.1, RTR telegram: LOW (dominant level), used recessive level
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct NodeGuardingResponse {
     /// NMT slave status.
     pub status: u8,
@@ -696,6 +708,8 @@ impl NodeGuardingResponse {
 ///   objects; 10.2.1: Identifier (COB-ID) = 1792 + node address of the producer; 7.1.1, table: Node guarding,
 ///   heartbeat: 1792 (700), used the identifier of the heartbeat is 1792 + node address, without choice
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Heartbeat {
     /// Heartbeat producer status.
     pub status: u8,
@@ -790,6 +804,8 @@ impl Heartbeat {
 /// - Protocol: emergency
 /// - Source: EDS94AYCCA-EN-5.0, 10.3 p. 84
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Emergency {
     /// Emergency error code.
     pub error_code: u16,
@@ -859,6 +875,8 @@ impl Emergency {
 /// - Protocol: PDO
 /// - Source: EDS94AYCCA-EN-5.0, 14 p. 171
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct PdoMappingEntry {
     /// Length.
     ///
@@ -919,6 +937,8 @@ impl PdoMappingEntry {
 /// - Protocol: heartbeat
 /// - Source: EDS94AYCCA-EN-5.0, 14 p. 162
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct ConsumerHeartbeatEntry {
     /// Heartbeat time in \[ms\].
     pub heartbeat_time: u16,
@@ -983,6 +1003,8 @@ impl ConsumerHeartbeatEntry {
 ///   address (C13350); 13.3, C14386: guard time (C14382), life time factor (C14383), node address (C14350); 10.1.3,
 ///   master: C13382 = 0 ms, C13383 = 0 (slave parameter), used times and address of the slave that is watched
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct NodeGuardingEntry {
     /// Guard time.
     pub guard_time: u16,
@@ -1041,6 +1063,8 @@ impl NodeGuardingEntry {
 /// - Protocol: SDO
 /// - Source: EDS94AYCCA-EN-5.0, 14 p. 165
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct CobIdEntry {
     /// COB-ID.
     pub cob_id: u32,
@@ -1164,6 +1188,8 @@ impl CobIdEntry {
 ///   Reserved; 14, I-1400/1: Bit 30: RTR to this PDO; 14, I-1800/1: Bit 30: RTR to this PDO, used bit 30 forbids RTR,
 ///   bits 11 ... 29 are reserved
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct PdoCobIdEntry {
     /// COB-ID.
     pub cob_id: u32,
@@ -1290,6 +1316,8 @@ impl PdoCobIdEntry {
 /// - Protocol: sync
 /// - Source: EDS94AYCCA-EN-5.0, 14 p. 157
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct SyncCobIdEntry {
     /// COB-ID SYNC message.
     pub cob_id: u32,
@@ -1412,6 +1440,8 @@ impl SyncCobIdEntry {
 /// - Erratum `signature-identifier`: printed 14, I-1010, write: wrong identifier; 14, I-1011, write: wrong identifier,
 ///   used wrong signature
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Signature<'a> {
     /// Signature.
     ///

@@ -20,6 +20,8 @@ use crate::codec::{self, DecodeError, EncodeError, Layout, Reader, Writer};
 /// - Erratum `gmt-reserved`: printed 7.1, GMT: 0x01 Reserved; 7.7.1, GMT: 0x01 Fixed; 7.6, 0x9009: Wrong GMT received,
 ///   used 0x01 in every telegram
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct GciHeader {
     /// GSV.
     ///
@@ -173,6 +175,8 @@ impl GciHeader {
 /// - Protocol: GCI
 /// - Source: EDS94AYCEN-EN-9.0, 7.4 p. 41
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct GciP0 {
     /// Status/error code.
     ///
@@ -254,6 +258,8 @@ impl GciP0 {
 /// - Erratum `gci-octet-string`: printed 7.4, note on byte 4 of P2: When the data type VISIBLE_STRING is transmitted;
 ///   7.4, OCTET_STRING: 256 bytes (max.), used byte 4 of P2 counts the attached bytes for both types
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Gci<'a> {
     /// GSV.
     pub gsv: u8,

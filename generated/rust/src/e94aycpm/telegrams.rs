@@ -29,6 +29,8 @@ use crate::codec::{self, DecodeError, EncodeError, Layout, Reader, Repeated, Wri
 ///   telegram, bytes 5 and 6: Data 4 0x00, Data 3 0x2B; 9.3.1, response telegram: 5th byte: Data 1 0x2B, used byte 5 is
 ///   Data 4, byte 8 is Data 1
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Drivecom4 {
     /// Service.
     ///
@@ -210,6 +212,8 @@ impl Drivecom4 {
 ///   telegram, bytes 5 and 6: Data 4 0x00, Data 3 0x2B; 9.3.1, response telegram: 5th byte: Data 1 0x2B, used byte 5 is
 ///   Data 4, byte 8 is Data 1
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Drivecom2 {
     /// Service.
     pub service: u8,
@@ -388,6 +392,8 @@ impl Drivecom2 {
 /// - Protocol: DRIVECOM
 /// - Source: EDS94AYCPM-EN-12.0, 9.2.5 p. 53
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Drivecom1 {
     /// Service.
     pub service: u8,
@@ -575,6 +581,8 @@ impl Drivecom1 {
 ///   "Read/Write Segment Service"; 9.2.5, note: Strings or data blocks cannot be transmitted; 9.2.2, data length: Data
 ///   length ≤ 4 bytes, used no segments on this channel
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct DrivecomError {
     /// Service.
     pub service: u8,
@@ -764,6 +772,8 @@ impl DrivecomError {
 ///   "Read/Write Segment Service"; 9.2.5, note: Strings or data blocks cannot be transmitted; 9.2.2, data length: Data
 ///   length ≤ 4 bytes, used no segments on this channel
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct DrivecomAbort {
     /// Service.
     pub service: u8,
@@ -937,6 +947,8 @@ impl DrivecomAbort {
 
 /// Entry of [`Dpv1ReadRequest::parameters`]: Parameter attribute, index and subindex.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Dpv1ReadRequestParametersEntry {
     /// Attribute.
     pub attribute: u8,
@@ -995,6 +1007,8 @@ impl Dpv1ReadRequestParametersEntry {
 /// - Erratum `dpv1-forty-parameters`: printed 14.5, 0x974/1: 40; 14.5, 0x974/0: 240 bytes; 9.3.3.1, request header and
 ///   address of each parameter: 4 bytes and 6 bytes, used 39 parameters in one read request
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Dpv1ReadRequest<'a> {
     /// Request reference.
     ///
@@ -1067,6 +1081,8 @@ impl<'a> Dpv1ReadRequest<'a> {
 
 /// Entry of [`Dpv1ReadResponse::values`]: Parameter format and parameter value.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Dpv1ReadResponseValuesEntry<'a> {
     /// Format.
     pub format: u8,
@@ -1163,6 +1179,8 @@ impl<'a> Dpv1ReadResponseValuesEntry<'a> {
 ///   are repeated with the number n of the parameters; 9.3.3.3, note: error of parameter n at the nth position of the
 ///   response, used values repeat for several subindices; format and values repeat for several parameters
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Dpv1ReadResponse<'a> {
     /// Request reference (mirrored).
     pub request_reference: u8,
@@ -1231,6 +1249,8 @@ impl<'a> Dpv1ReadResponse<'a> {
 
 /// Entry of [`Dpv1ReadError::results`]: Parameter format and parameter value or error code.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Dpv1ReadErrorResultsEntry<'a> {
     /// Format.
     pub format: u8,
@@ -1335,6 +1355,8 @@ impl<'a> Dpv1ReadErrorResultsEntry<'a> {
 /// - Erratum `dpv1-error-code-range`: printed 9.3.3.3 and 9.3.3.6, error code: 0x0000 .... 0xFFFF; 9.3.4, last error
 ///   code: 0x00FF; 6.7, error values: 0x0000 ... 0x00FF, used 0x0000 ... 0x00FF
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Dpv1ReadError<'a> {
     /// Request reference (mirrored).
     pub request_reference: u8,
@@ -1403,6 +1425,8 @@ impl<'a> Dpv1ReadError<'a> {
 
 /// Entry of [`Dpv1WriteRequest::parameters`]: Parameter attribute, index and subindex.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Dpv1WriteRequestParametersEntry {
     /// Attribute.
     pub attribute: u8,
@@ -1451,6 +1475,8 @@ impl Dpv1WriteRequestParametersEntry {
 
 /// Entry of [`Dpv1WriteRequest::values`]: Parameter format and parameter value.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Dpv1WriteRequestValuesEntry<'a> {
     /// Format.
     pub format: u8,
@@ -1550,6 +1576,8 @@ impl<'a> Dpv1WriteRequestValuesEntry<'a> {
 ///   are repeated with the number n of the parameters; 9.3.3.3, note: error of parameter n at the nth position of the
 ///   response, used values repeat for several subindices; format and values repeat for several parameters
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Dpv1WriteRequest<'a> {
     /// Request reference.
     ///
@@ -1640,6 +1668,8 @@ impl<'a> Dpv1WriteRequest<'a> {
 ///   correct write request: 4 bytes, nothing behind; 6.3, table 6-17, change request not completely executed: 82 hex;
 ///   40 hex: Zero, 44 hex: Error, used entries for each parameter come with 0x82 only
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Dpv1WriteResponse {
     /// Request reference (mirrored).
     pub request_reference: u8,
@@ -1702,6 +1732,8 @@ impl Dpv1WriteResponse {
 
 /// Entry of [`Dpv1WriteError::results`]: Result of each parameter.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Dpv1WriteErrorResultsEntry<'a> {
     /// Format.
     pub format: u8,
@@ -1766,6 +1798,8 @@ impl<'a> Dpv1WriteErrorResultsEntry<'a> {
 ///   correct write request: 4 bytes, nothing behind; 6.3, table 6-17, change request not completely executed: 82 hex;
 ///   40 hex: Zero, 44 hex: Error, used entries for each parameter come with 0x82 only
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Dpv1WriteError<'a> {
     /// Request reference (mirrored).
     pub request_reference: u8,
@@ -1840,6 +1874,8 @@ impl<'a> Dpv1WriteError<'a> {
 /// - Protocol: PROFIdrive
 /// - Source: TOSHIBA-E6581738, 6.2.1 p. 32, public document
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Dpv1Header {
     /// Function identification.
     pub function: u8,
@@ -1919,6 +1955,8 @@ impl Dpv1Header {
 /// - Erratum `c00168-fault-memory`: printed 12.3, bytes 13 ... 16: C00168: contents of the fault memory; 10.3,
 ///   emergency telegram: Lenze error number (value displayed in C00168), used error number
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Diagnosis {
     /// Byte 1.
     ///

@@ -18,6 +18,8 @@ use crate::codec::{self, DecodeError, EncodeError, Layout, Reader, Writer};
 /// - Protocol: SDO
 /// - Source: KHB-13.0002-EN-4.1, 5.2.1 p. 19
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Sdo {
     /// Command code.
     ///
@@ -211,6 +213,8 @@ impl Sdo {
 /// - Protocol: SDO
 /// - Source: KHB-13.0002-EN-4.1, 5.2.1 p. 22
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct SdoError {
     /// Index.
     ///
@@ -278,6 +282,8 @@ impl SdoError {
 /// - Protocol: SDO
 /// - Source: KHB-13.0002-EN-4.1, 5.2.1 p. 22
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct SdoErrorCode {
     /// Error code (F0 ... F3).
     pub error_code: u32,
@@ -328,6 +334,8 @@ impl SdoErrorCode {
 /// - Protocol: PDO
 /// - Source: KHB-13.0002-EN-4.1, 5.3.1 p. 25
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Pdo<'a> {
     /// Data 0 ... Data 7.
     pub data: &'a [u8],
@@ -375,6 +383,8 @@ impl<'a> Pdo<'a> {
 /// - Protocol: PDO
 /// - Source: KHB-13.0002-EN-4.1, 5.3.3 p. 27, derived
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Tpdo1Default {
     /// I-6041.
     pub status_word: u16,
@@ -425,6 +435,8 @@ impl Tpdo1Default {
 /// - Protocol: PDO
 /// - Source: KHB-13.0002-EN-4.1, 5.3.3 p. 29, derived
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Tpdo2Default {
     /// I-6041.
     pub status_word: u16,
@@ -482,6 +494,8 @@ impl Tpdo2Default {
 /// - Erratum `emergency-register`: printed 5.6.1, third byte: additional error code (object 1001h); 9.6.3, object
 ///   1001h: 1001h: error register, used error register
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Emergency {
     /// error_code (E0, E1).
     pub error_code: u16,
@@ -545,6 +559,8 @@ impl Emergency {
 /// - Protocol: heartbeat
 /// - Source: KHB-13.0002-EN-4.1-azmanual, 5.7.1 p. 47, public document
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Heartbeat {
     /// N.
     ///
