@@ -28,6 +28,7 @@ from generator.emit import names
 from generator.emit.base import EmitError
 from generator.emit.python import render
 from generator.emit.python.telegrams import class_name, field_name
+from generator.emit.switches import remarks
 from generator.model import (
     Access,
     Bit,
@@ -298,6 +299,7 @@ def test_records_have_every_field_of_the_model(package: Any) -> None:
     enums = {"options": "selection_name", "bits": "flags_name"}
     added = {"device", "index"}  # the way back from a record to its module and object
     places = {"where", "about_text", "printed_text", "used_text", "rule"}
+    in_notes = {"block", "delivered", "code_counts"}
     for record, source in (
         (package.Code, Code),
         (package.SubCode, SubCode),
@@ -322,7 +324,7 @@ def test_records_have_every_field_of_the_model(package: Any) -> None:
         (package.Column, Column),
     ):
         fields = {enums.get(field.name, field.name) for field in dataclasses.fields(source)}
-        left_out = places | (as_printed - set(record.__slots__))
+        left_out = places | in_notes | (as_printed - set(record.__slots__))
         assert set(record.__slots__) | added == (fields - left_out) | added, source
 
 
@@ -703,8 +705,9 @@ def test_switches(pairs: list[tuple[Any, Device]]) -> None:
         assert list(module.SWITCHES) == [group.id for group in device.switches]
         for group in device.switches:
             record = module.SWITCHES[group.id]
-            names_ = ("id", "name", "labels", "weights", "valid", "unit", "notes", "errata")
+            names_ = ("id", "name", "labels", "weights", "valid", "unit", "errata")
             assert [getattr(record, n) for n in names_] == [getattr(group, n) for n in names_]
+            assert record.notes == remarks(group)
             assert (plain_cite(record.cite), record.origin) == (plain_cite(group.cite), group.origin.value)
             assert plain_refs(record.sets) == plain_refs(group.sets)
             assert [(str(row.value), row.positions) for row in record.rows] == [

@@ -17,6 +17,7 @@ from generator.emit import names
 from generator.emit.base import EmitError
 from generator.emit.rust import TARGET
 from generator.emit.rust.syntax import doc
+from generator.emit.switches import remarks
 from generator.model import (
     Access,
     Bit,
@@ -175,7 +176,7 @@ def switch_facts(path: str, group: SwitchGroup) -> Iterator[str]:
         number = int(row.value) if row.value.isdecimal() else None
         on, either = (int("".join("01"[p == of] for p in reversed(row.positions)), 2) for of in "1x")
         yield from entry(f"{path}/row/{position}", value=row.value, number=number, on=on, either=either)
-    yield from listed(f"{path}/note", group.notes)
+    yield from listed(f"{path}/note", remarks(group))
     yield from source_facts(path, group, group.errata)
 
 

@@ -49,6 +49,10 @@ def _citations(model: Model) -> Iterator[tuple[Cite, Where]]:
         entries += [row for table in device.indicators for row in table.rows]
         for entry in entries:
             yield entry.cite, entry.where
+        for group in device.switches:
+            for part in (group.block, group.delivered, group.code_counts):
+                if part is not None:
+                    yield part.cite, group.where
         for code in device.codes:
             if code.default_cite is not None:
                 yield code.default_cite, code.where

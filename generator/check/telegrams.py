@@ -9,6 +9,9 @@ from generator.codec import CodecError, decode, encode
 from generator.model import CodeRef, Device, Example, Layout, Model, Values
 from generator.model.telegram import OPEN, Value
 
+_TERMINALS = "terminal"
+"""Kind of the tables that list the labels on a module."""
+
 
 def examples(model: Model, device: Device) -> Iterator[Finding]:
     """Rules telegram-bytes, telegram-values: each example decodes to its values and encodes to its bytes."""
@@ -159,7 +162,7 @@ def switches(model: Model, device: Device) -> Iterator[Finding]:
                     where=row.where,
                 )
         for a, b in combinations(group.rows, 2):
-            if all(p == q or "x" in (p, q) for p, q in zip(a.positions, b.positions, strict=True)):
+            if a.fits(b.positions):
                 yield Finding(
                     rule="switch-distinct",
                     subject=subject,
@@ -169,18 +172,31 @@ def switches(model: Model, device: Device) -> Iterator[Finding]:
                     message=f"the rows {a.value} and {b.value} have the same position",
                     where=b.where,
                 )
-        for ref in group.sets:
+        named = [("sets", ref) for ref in group.sets]
+        named += [("code_counts", ref) for ref in (group.code_counts.codes if group.code_counts else ())]
+        for place, ref in named:
             problem = missing_code(CodeRef(ref.number, ref.subcode), device)
             if problem:
                 yield Finding(
                     rule="reference",
                     subject=subject,
-                    place="sets",
+                    place=place,
                     printed=str(ref),
                     expected="a code of the device",
                     message=problem,
                     where=group.where,
                 )
+        terminals = {row[0] for table in device.tables if table.kind == _TERMINALS for row in table.rows}
+        if group.block and group.block.label not in terminals:
+            yield Finding(
+                rule="reference",
+                subject=subject,
+                place="block",
+                printed=group.block.label,
+                expected="the first cell of a row of a table of terminals",
+                message=f"no table of terminals has '{group.block.label}'",
+                where=group.where,
+            )
 
 
 def patterns(model: Model, device: Device) -> Iterator[Finding]:

@@ -3,14 +3,17 @@
 from generator.elaborate.codes import ErrataIndex
 from generator.elaborate.common import origin
 from generator.model import (
+    CodeCounts,
     CodeRef,
     Column,
+    Delivered,
     Formula,
     FormulaExample,
     IndicatorRow,
     IndicatorTable,
     Led,
     Pattern,
+    SwitchBlock,
     SwitchGroup,
     SwitchRow,
     Table,
@@ -83,13 +86,7 @@ def _switch(node: Node, errata: ErrataIndex) -> SwitchGroup:
     rows = node.child("rows")
     assert rows is not None
     for value, positions in rows.data.items():
-        if len(str(positions)) != len(labels):
-            node.problems.add(
-                "list-length",
-                rows.at(value),
-                f"{len(str(positions))} positions for {len(labels)} switches",
-                hint="give one of 0, 1 and x for each switch",
-            )
+        _positions(rows, value, str(positions), len(labels))
     weights = tuple(node.get("weights", ()))
     if weights and len(weights) != len(labels):
         node.problems.add("list-length", node.at("weights"), f"{len(weights)} weights for {len(labels)} switches")
@@ -102,7 +99,10 @@ def _switch(node: Node, errata: ErrataIndex) -> SwitchGroup:
         weights=weights,
         valid=(int(valid.low), int(valid.high)) if valid else None,
         unit=str(node.get("unit", "")),
-        sets=tuple(i for run in node.read("sets", references) or () for i in run.items if isinstance(i, CodeRef)),
+        sets=_codes(node, "sets"),
+        block=_block(node.child("block")),
+        delivered=_delivered(node.child("delivered"), len(labels)),
+        code_counts=_code_counts(node.child("code_counts"), len(labels)),
         rows=tuple(SwitchRow(value=v, positions=str(p), where=rows.at(v)) for v, p in rows.data.items()),
         notes=tuple(text.strip() for text in node.texts("notes")),
         origin=origin(node),
@@ -110,6 +110,39 @@ def _switch(node: Node, errata: ErrataIndex) -> SwitchGroup:
         errata=errata.of(f"switch:{node.get('id')}"),
         where=node.at("id"),
     )
+
+
+def _positions(node: Node, key: str, positions: str, switches: int) -> str:
+    """Positions that stand below a key; noted where they are not one for each switch."""
+    if len(positions) != switches:
+        node.problems.add(
+            "list-length",
+            node.at(key),
+            f"{len(positions)} positions for {switches} switches",
+            hint="give one of 0, 1 and x for each switch",
+        )
+    return positions
+
+
+def _codes(node: Node, key: str) -> tuple[CodeRef, ...]:
+    return tuple(i for run in node.read(key, references) or () for i in run.items if isinstance(i, CodeRef))
+
+
+def _block(node: Node | None) -> SwitchBlock | None:
+    return SwitchBlock(str(node.get("label")), node.cite()) if node else None
+
+
+def _delivered(node: Node | None, switches: int) -> Delivered | None:
+    if node is None:
+        return None
+    return Delivered(_positions(node, "positions", str(node.get("positions")), switches), node.cite())
+
+
+def _code_counts(node: Node | None, switches: int) -> CodeCounts | None:
+    if node is None:
+        return None
+    positions = tuple(_positions(node, "positions", text, switches) for text in node.texts("positions"))
+    return CodeCounts(positions, _codes(node, "code"), node.cite())
 
 
 def tables(root: Node, errata: ErrataIndex) -> tuple[Table, ...]:

@@ -12,6 +12,7 @@ from generator.model import (
     BitField,
     Cite,
     Code,
+    CodeCounts,
     Default,
     Device,
     DictionaryObject,
@@ -271,11 +272,24 @@ def _switch(group: SwitchGroup) -> Json:
         "valid": None if group.valid is None else {"first": group.valid[0], "last": group.valid[1]},
         "unit": group.unit or None,
         "sets": [str(ref) for ref in group.sets],
+        "block": {"label": group.block.label, "cite": _cite(group.block.cite)} if group.block else None,
+        "delivered": (
+            {"positions": group.delivered.positions, "cite": _cite(group.delivered.cite)} if group.delivered else None
+        ),
+        "code_counts": _code_counts(group.code_counts) if group.code_counts else None,
         "values": {row.value: row.positions for row in group.rows},
         "notes": list(group.notes),
         "origin": group.origin.value,
         "cite": _cite(group.cite),
         "errata": list(group.errata),
+    }
+
+
+def _code_counts(found: CodeCounts) -> Json:
+    return {
+        "positions": list(found.positions),
+        "codes": [str(ref) for ref in found.codes],
+        "cite": _cite(found.cite),
     }
 
 

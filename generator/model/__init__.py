@@ -11,7 +11,18 @@ from generator.model.device import CanOpenFacts, Device, Drive, DriveCommand, Dr
 from generator.model.erratum import Erratum, ErratumPlace
 from generator.model.error import ErrorEntry, PrintedNumber
 from generator.model.gsd import Gsd
-from generator.model.indicator import IndicatorRow, IndicatorTable, Led, Light, Pattern, SwitchGroup, SwitchRow
+from generator.model.indicator import (
+    CodeCounts,
+    Delivered,
+    IndicatorRow,
+    IndicatorTable,
+    Led,
+    Light,
+    Pattern,
+    SwitchBlock,
+    SwitchGroup,
+    SwitchRow,
+)
 from generator.model.objects import CobId, DictionaryObject, StandardObject, StandardSubIndex, SubIndex
 from generator.model.pin import Pin
 from generator.model.reference import CodeRef, ErrorRef, ObjectRef
@@ -29,10 +40,12 @@ __all__ = [
     "Cite",
     "CobId",
     "Code",
+    "CodeCounts",
     "CodeRef",
     "Column",
     "DataType",
     "Default",
+    "Delivered",
     "Device",
     "DictionaryObject",
     "Drive",
@@ -71,6 +84,7 @@ __all__ = [
     "StandardSubIndex",
     "SubCode",
     "SubIndex",
+    "SwitchBlock",
     "SwitchGroup",
     "SwitchRow",
     "Table",

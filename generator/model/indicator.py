@@ -77,6 +77,15 @@ class IndicatorTable:
     where: Where
 
 
+def fits(row: str, positions: str) -> bool:
+    """Whether two positions, either with "x" where a switch may be ON or OFF, can be the same.
+
+    >>> fits("1x0", "110"), fits("1x0", "011")
+    (True, False)
+    """
+    return all(p == q or "x" in (p, q) for p, q in zip(row, positions, strict=True))
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SwitchRow:
     """A printed row: ``positions`` holds "1" (ON), "0" (OFF) or "x" (either) for each switch."""
@@ -85,13 +94,42 @@ class SwitchRow:
     positions: str
     where: Where
 
+    def fits(self, positions: str) -> bool:
+        """Whether the row is about ``positions``, "1" or "0" for each switch."""
+        return fits(self.positions, positions)
+
+
+@dataclass(frozen=True, slots=True)
+class SwitchBlock:
+    """Label of a block of switches on the module, and where the manual says it."""
+
+    label: str
+    cite: Cite
+
+
+@dataclass(frozen=True, slots=True)
+class Delivered:
+    """How switches stand when the module is delivered: "1" (ON) or "0" (OFF) for each."""
+
+    positions: str
+    cite: Cite
+
+
+@dataclass(frozen=True, slots=True)
+class CodeCounts:
+    """Positions, each as in a row, in which codes count and the switches do not."""
+
+    positions: tuple[str, ...]
+    codes: tuple[CodeRef, ...]
+    cite: Cite
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SwitchGroup:
     """Switches that set one thing.
 
     ``weights``: of each switch where the value is the sum of those that are ON, else empty.  ``valid``: first and last
-    valid value of such a sum.
+    valid value of such a sum.  ``block``, ``delivered``, ``code_counts``: ``None`` where the manual does not say it.
     """
 
     id: str
@@ -101,6 +139,9 @@ class SwitchGroup:
     valid: tuple[int, int] | None
     unit: str
     sets: tuple[CodeRef, ...]
+    block: SwitchBlock | None
+    delivered: Delivered | None
+    code_counts: CodeCounts | None
     rows: tuple[SwitchRow, ...]
     notes: tuple[str, ...]
     origin: Origin
@@ -111,3 +152,7 @@ class SwitchGroup:
     def sum(self, positions: str) -> int:
         """Sum of the weights of the switches that are ON."""
         return sum(w for w, p in zip(self.weights, positions, strict=True) if p == "1")
+
+    def code_decides(self, positions: str) -> bool:
+        """Whether a code counts and not the switches in ``positions``."""
+        return self.code_counts is not None and any(fits(row, positions) for row in self.code_counts.positions)

@@ -123,7 +123,9 @@ SWITCHES: tuple[tuple[object, ...], ...] = (
             (126, "1111110"), (127, "1111111"),
         ),
         (
-            "With all seven switches OFF, the Lenze setting, the node address is that of the code C13350 / C14350 (chapter 6.2.1); as soon as one of them is ON, the switches determine it.",
+            "Part of the block S220.", "Delivered with the switches all OFF.",
+            "With the switches all OFF, C13350 / C14350 counts instead of them.",
+            "As soon as one of the seven switches is ON, the switches determine the node address (chapter 6.2.1).",
             "A new position counts after the supply has been switched off and on; C13349/1 shows what was read then.",
         ),
         "manual", ("EDS94AYCCA-EN-5.0", "15", 178),
@@ -136,7 +138,8 @@ SWITCHES: tuple[tuple[object, ...], ...] = (
             (1000, "0100"), ("Automatic detection", "0111"),
         ),
         (
-            "All four switches OFF is the Lenze setting. Every node of the bus needs the same baud rate.",
+            "Part of the block S220.", "Delivered with the switches all OFF.",
+            "Every node of the bus needs the same baud rate.",
             "A new position counts after the supply has been switched off and on; C13349/2 shows what was read then.",
             "Read as a binary number, d first, a position is the value that C13351 has for the same baud rate; the automatic detection alone is 7 here and 255 there.",
         ),

@@ -8,6 +8,7 @@ from generator.emit.c.device import device_prefix
 from generator.emit.c.prose import cited, errata, provenance, references
 from generator.emit.c.syntax import comment, integer, paragraph, string, text_size
 from generator.emit.c.writer import Constant, Names, Section, Writer
+from generator.emit.switches import remarks
 from generator.model import Device, IndicatorTable, Light, Manual, Model, Pattern, SwitchGroup, SwitchRow, Where
 from generator.naming import snake
 
@@ -127,7 +128,7 @@ def _group(group: SwitchGroup, device: Device, names: Names) -> Group:
     writer = Writer(names, name.upper(), group.name, group.where)
     for bit, label in enumerate(reversed(group.labels)):
         writer.number(label.upper(), 1 << bit, f"switch {label}", 16, hexadecimal=True)
-    lines = [f"Unit: {group.unit}." if group.unit else "", *group.notes]
+    lines = [f"Unit: {group.unit}." if group.unit else "", *remarks(group)]
     lines += [f"Sets {references(group.sets)}." if group.sets else "", cited(group.cite, group.origin)]
     lines += errata(device, group.errata, {})
     low, high = group.valid or (0, sum(group.weights))

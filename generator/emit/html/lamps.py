@@ -39,9 +39,13 @@ def lamp(led: Led, pattern: Pattern) -> Prose:
     """What an LED does: a drawing, the words for it, and the pattern as data."""
     if pattern.light is Light.ANY:
         return NONE
-    classes = ["led", *_colour_class(led, pattern), _light_class(pattern)]
-    drawing = Piece("", tag="span", css=" ".join(classes))
+    drawing = Piece("", tag="span", css=lamp_css(led, pattern))
     return drawing, " ", words(pattern), " ", Piece(notation(pattern), tag="code")
+
+
+def lamp_css(led: Led, pattern: Pattern) -> str:
+    """Classes of the drawing of an LED."""
+    return " ".join(["led", *_colour_class(led, pattern), _light_class(pattern)])
 
 
 def words(pattern: Pattern) -> str:
@@ -92,6 +96,8 @@ def _colour_class(led: Led, pattern: Pattern) -> list[str]:
 def _light_class(pattern: Pattern) -> str:
     """Class of the drawing: the light alone, or with it what the animation depends on."""
     match pattern.light:
+        case Light.ANY:
+            return "unknown"
         case Light.OFF:
             return "off"
         case Light.FLICKER:

@@ -9,6 +9,7 @@ from generator.emit.html.codenames import code_names, object_names
 from generator.emit.html.codes import code_entry, code_group
 from generator.emit.html.contents import PART, DeviceLists, Section, listed, sections
 from generator.emit.html.coverage import Coverage, coverage
+from generator.emit.html.dip import Board, boards
 from generator.emit.html.downloads import (
     DownloadGroup,
     Offered,
@@ -22,6 +23,7 @@ from generator.emit.html.errors import error_entry, error_group
 from generator.emit.html.files import FileSection, file_sections
 from generator.emit.html.filters import SCRIPT as FILTER
 from generator.emit.html.filters import Filter, filter_of
+from generator.emit.html.finder import Finder, finder
 from generator.emit.html.frame import Frame, NavItem, coverage_item, device_frame, site_frame
 from generator.emit.html.home import home, not_found
 from generator.emit.html.ledger import ledger_groups
@@ -58,6 +60,8 @@ _LEADS = {
 }
 _FILTERED = {"codes": ("Data type", "Access"), "objects": ("Type",), "errors": ("Response",)}
 """Parts whose entries have a page of their own each, with the columns by which their overviews are filtered."""
+_SCRIPTS = {"leds": ("panel.js",), "switches": ("panel.js",)}
+"""Scripts of the instruments of a part."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,12 +75,17 @@ class Page:
 
 @dataclass(frozen=True, slots=True)
 class PartView:
-    """Groups of entries; ``lead`` is "" where the title says enough.  ``blinks``: it has drawings that move."""
+    """Groups of entries; ``lead`` is "" where the title says enough.
+
+    ``blinks``: it has drawings that move.  ``boards`` and ``finder``: instruments that stand above the groups.
+    """
 
     lead: str
     groups: tuple[Group, ...]
     blinks: bool
     filter: Filter | None
+    boards: tuple[Board, ...] = ()
+    finder: Finder | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -217,9 +226,9 @@ def _device_pages(model: Model, links: Links, offered: Offered) -> Iterator[Page
             part=part,
             title=title,
             description=f"{title} of the {device.title}: {names}.",
-            scripts=(FILTER,) if found else (),
+            scripts=(*_SCRIPTS.get(part, ()), *((FILTER,) if found else ())),
         )
-        yield Page(frame, "part", PartView(_LEADS.get(part, ""), groups, blinks=part == "leds", filter=found))
+        yield Page(frame, "part", _part_view(links.on(frame.path), part, groups, found))
         if part in _FILTERED:
             yield from _entry_pages(model, links, nav, part)
     if device.drive:
@@ -233,6 +242,18 @@ def _device_pages(model: Model, links: Links, offered: Offered) -> Iterator[Page
         )
         frame = device_frame(model, device, nav, part="files", title=_TITLES["files"], description=description)
         yield Page(frame, "files", files)
+
+
+def _part_view(links: Links, part: str, groups: tuple[Group, ...], filtered: Filter | None) -> PartView:
+    device = links.device
+    return PartView(
+        _LEADS.get(part, ""),
+        groups,
+        blinks=part == "leds",
+        filter=filtered,
+        boards=boards(links, device.switches) if part == "switches" else (),
+        finder=finder(device.indicators) if part == "leds" else None,
+    )
 
 
 def _entry_pages(model: Model, links: Links, nav: Sequence[NavItem], part: str) -> Iterator[Page]:

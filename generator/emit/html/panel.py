@@ -1,14 +1,14 @@
 """LEDs and DIP switches as entries of the reference."""
 
-import re
 from collections.abc import Iterator, Sequence
 
 from generator.emit.html.blocks import Anchor, Bullets, Entry, Fact, Group, Row, Table
 from generator.emit.html.lamps import lamp
 from generator.emit.html.links import Links
 from generator.emit.html.notes import named_subject, notes
-from generator.emit.html.places import named_id
+from generator.emit.html.places import named_id, switch_row_id
 from generator.emit.html.text import NONE, Piece, Prose, between, joined, noted, shown_origin
+from generator.emit.switches import stand
 from generator.model import IndicatorRow, IndicatorTable, Origin, SwitchGroup, SwitchRow
 
 _LED_OVERVIEW = ("LEDs", "Name", "Rows")
@@ -57,8 +57,10 @@ def led_entry(links: Links, table: IndicatorTable) -> Entry:
 def _led_row(links: Links, table: IndicatorTable, number: int, row: IndicatorRow, with_source: bool) -> Row:
     lamps = (lamp(led, pattern) for led, pattern in zip(table.leds, row.patterns, strict=True))
     source = _row_source(links, row) if with_source else ()
-    cells = (*lamps, row.state, links.prose(row.meaning) or NONE, *([source] if source else []))
-    return Row(cells, id=named_id("led", table.id, str(number)))
+    anchor = named_id("led", table.id, str(number))
+    state = (Piece(row.state, f"#{anchor}"),)
+    cells = (*lamps, state, links.prose(row.meaning) or NONE, *([source] if source else []))
+    return Row(cells, id=anchor)
 
 
 def _row_source(links: Links, row: IndicatorRow) -> Prose:
@@ -105,6 +107,14 @@ def _switch_facts(links: Links, group: SwitchGroup) -> Iterator[Fact]:
         yield Fact("Unit", group.unit)
     if group.sets:
         yield Fact("Held in", links.codes(group.sets))
+    if group.block is not None:
+        yield Fact("Block", (group.block.label, " ", *links.source(group.block.cite)))
+    if group.delivered is not None:
+        yield Fact("As delivered", (stand(group, group.delivered.positions), " ", *links.source(group.delivered.cite)))
+    if group.code_counts is not None:
+        when = " or ".join(stand(group, positions) for positions in group.code_counts.positions)
+        codes = joined([(links.code(ref),) for ref in group.code_counts.codes], " / ")
+        yield Fact("A code counts", (*codes, f" where the switches are {when} ", *links.source(group.code_counts.cite)))
     special = [row for row in group.rows if not row.value.isdigit()]
     if special and len(special) < len(group.rows):
         yield Fact("Special positions", joined([_special(links, group, row) for row in special], "; "))
@@ -114,15 +124,11 @@ def _switch_facts(links: Links, group: SwitchGroup) -> Iterator[Fact]:
 def _special(links: Links, group: SwitchGroup, row: SwitchRow) -> Prose:
     meaning = links.prose(row.value)
     pieces = (meaning,) if isinstance(meaning, str) else meaning
-    return (*pieces, ": ", Piece(" ".join(map(_position, row.positions)), f"#{_row_id(group, row)}"))
+    return (*pieces, ": ", Piece(" ".join(map(_position, row.positions)), f"#{switch_row_id(group, row)}"))
 
 
 def _position(sign: str) -> str:
     return _POSITIONS.get(sign, sign)
-
-
-def _row_id(group: SwitchGroup, row: SwitchRow) -> str:
-    return named_id("switch", group.id, re.sub(r"[^a-z0-9]+", "-", row.value.lower()).strip("-"))
 
 
 def _positions(links: Links, group: SwitchGroup) -> Iterator[Table]:
@@ -135,4 +141,4 @@ def _positions(links: Links, group: SwitchGroup) -> Iterator[Table]:
 
 def _switch_row(links: Links, group: SwitchGroup, row: SwitchRow) -> Row:
     cells = ((Piece(_position(sign), tag="b"),) if sign == "1" else _position(sign) for sign in row.positions)
-    return Row((links.prose(row.value), *cells), id=_row_id(group, row))
+    return Row((links.prose(row.value), *cells), id=switch_row_id(group, row))

@@ -1,9 +1,10 @@
 """Anchors, which are made of numbers and outlive names, and the page on which each of them stands."""
 
+import re
 from collections.abc import Hashable, Iterable, Iterator
 from typing import TypeVar
 
-from generator.model import Code, Device, DictionaryObject, ErrorEntry
+from generator.model import Code, Device, DictionaryObject, ErrorEntry, SwitchGroup, SwitchRow
 
 T = TypeVar("T")
 
@@ -60,6 +61,11 @@ def named_id(kind: str, name: str, part: str = "") -> str:
     ``kind`` is as in the ledger: "led", "switch", "table", "formula", "layout" or "telegram".
     """
     return f"{kind}-{name}.{part}" if part else f"{kind}-{name}"
+
+
+def switch_row_id(group: SwitchGroup, row: SwitchRow) -> str:
+    """Anchor of a printed position of switches: ``switch-node-address.23``."""
+    return named_id("switch", group.id, re.sub(r"[^a-z0-9]+", "-", row.value.lower()).strip("-"))
 
 
 def page_of(device: Device, part: str = "") -> str:

@@ -5,6 +5,7 @@ from fractions import Fraction
 from generator.emit.python.rows import cite_row, tuple_table
 from generator.emit.python.text import Literal, fill
 from generator.emit.python.views import RowView, TableView
+from generator.emit.switches import remarks
 from generator.model import Device, IndicatorRow, IndicatorTable, Pattern, SwitchGroup, Table
 
 
@@ -45,7 +46,7 @@ def _switch(group: SwitchGroup) -> RowView:
         group.unit,
         tuple((ref.number, ref.subcode) for ref in group.sets),
         tuple((int(row.value) if row.value.isdecimal() else row.value, row.positions) for row in group.rows),
-        group.notes,
+        remarks(group),
         group.origin.value,
         cite_row(group.cite),
         group.errata,

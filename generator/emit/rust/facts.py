@@ -15,6 +15,7 @@ from generator.emit.rust.syntax import (
     struct,
     type_name,
 )
+from generator.emit.switches import remarks
 from generator.model import (
     Access,
     Bit,
@@ -287,7 +288,7 @@ def switches(value: SwitchGroup) -> Expression:
             ("unit", string(value.unit)),
             ("sets", array(map(code_ref, value.sets))),
             ("rows", array(map(_switch_row, value.rows))),
-            ("notes", texts(value.notes)),
+            ("notes", texts(remarks(value))),
             ("origin", origin(value.origin)),
             ("cite", cite(value.cite)),
             ("errata", texts(value.errata)),

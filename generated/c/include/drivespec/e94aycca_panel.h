@@ -28,8 +28,10 @@
 
 /**
  * Rows of: Node address.
- * With all seven switches OFF, the Lenze setting, the node address is that of the code C13350 / C14350 (chapter
- * 6.2.1); as soon as one of them is ON, the switches determine it.
+ * Part of the block S220.
+ * Delivered with the switches all OFF.
+ * With the switches all OFF, C13350 / C14350 counts instead of them.
+ * As soon as one of the seven switches is ON, the switches determine the node address (chapter 6.2.1).
  * A new position counts after the supply has been switched off and on; C13349/1 shows what was read then.
  * Sets C13349/1, C14349/1.
  * EDS94AYCCA-EN-5.0, 15 p. 178.
@@ -228,7 +230,9 @@ static inline bool e94aycca_switch_node_address_position(uint32_t value, uint32_
 /**
  * Rows of: Baud rate.
  * Unit: kbps.
- * All four switches OFF is the Lenze setting. Every node of the bus needs the same baud rate.
+ * Part of the block S220.
+ * Delivered with the switches all OFF.
+ * Every node of the bus needs the same baud rate.
  * A new position counts after the supply has been switched off and on; C13349/2 shows what was read then.
  * Read as a binary number, d first, a position is the value that C13351 has for the same baud rate; the automatic
  * detection alone is 7 here and 255 there.

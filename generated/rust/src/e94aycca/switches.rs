@@ -147,7 +147,10 @@ pub const GROUPS: &[SwitchGroup] = &[
             SwitchRow { value: "127", number: Some(127), on: 0x7F, either: 0x00 },
         ],
         notes: &[
-            "With all seven switches OFF, the Lenze setting, the node address is that of the code C13350 / C14350 (chapter 6.2.1); as soon as one of them is ON, the switches determine it.",
+            "Part of the block S220.",
+            "Delivered with the switches all OFF.",
+            "With the switches all OFF, C13350 / C14350 counts instead of them.",
+            "As soon as one of the seven switches is ON, the switches determine the node address (chapter 6.2.1).",
             "A new position counts after the supply has been switched off and on; C13349/1 shows what was read then.",
         ],
         origin: Origin::Manual,
@@ -174,7 +177,9 @@ pub const GROUPS: &[SwitchGroup] = &[
             SwitchRow { value: "Automatic detection", number: None, on: 0xE, either: 0x0 },
         ],
         notes: &[
-            "All four switches OFF is the Lenze setting. Every node of the bus needs the same baud rate.",
+            "Part of the block S220.",
+            "Delivered with the switches all OFF.",
+            "Every node of the bus needs the same baud rate.",
             "A new position counts after the supply has been switched off and on; C13349/2 shows what was read then.",
             "Read as a binary number, d first, a position is the value that C13351 has for the same baud rate; the automatic detection alone is 7 here and 255 there.",
         ],

@@ -145,8 +145,10 @@ pub const GROUPS: &[SwitchGroup] = &[
             SwitchRow { value: "126", number: Some(126), on: 0x3F, either: 0x00 },
         ],
         notes: &[
-            "All switches OFF is the Lenze setting; the address then comes from C13899 / C14899 (6.3.1, page 31).",
-            "All switches ON give 127, which is no address; chapter 6.3.1 lets C13899 / C14899 count in that case as well.",
+            "Part of the block S200.",
+            "Delivered with the switches all OFF.",
+            "With the switches all OFF or all ON, C13899 / C14899 counts instead of them.",
+            "As soon as one of the seven switches is ON, the switches set the address, unless all of them are (6.3.1, page 31).",
             "C13920 / C14920 show the sum of the switches, C13864 / C14864 the address that is in force.",
             "A change counts after the supply of the module was switched off and on again (6.3.1, page 31).",
             "Every station on the bus needs an address of its own.",
@@ -168,7 +170,8 @@ pub const GROUPS: &[SwitchGroup] = &[
             SwitchRow { value: "No EMF2133IB compatibility", number: None, on: 0x0, either: 0x0 },
         ],
         notes: &[
-            "OFF is the Lenze setting (6.3, page 31).",
+            "Part of the block S200.",
+            "Delivered with the switches OFF.",
             "While it is ON, parameters go through the DRIVECOM channel (DP-V0) alone and only the Lenze device control works.",
             "A change counts after the supply of the module was switched off and on again.",
             "The manual of the EMF2133IB tells how the module is configured and identified in this mode.",
