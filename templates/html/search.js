@@ -282,7 +282,7 @@
     });
     const list = make("div", { role: "listbox", id: "answers", "aria-label": "Answers" });
     const foot = make("p", { class: "foot" });
-    const panel = make("div", { class: "answers", hidden: "" }, list, foot);
+    const panel = make("div", { class: "search-answers", hidden: "" }, list, foot);
     const status = make("p", { role: "status", class: "unseen" });
     const keys = make("kbd", { "aria-hidden": "true" }, "/");
     const box = make("div", { class: home ? "search large" : "search", role: "search" },
