@@ -6,6 +6,7 @@ import re
 import subprocess
 import sys
 import zipfile
+from dataclasses import replace
 from pathlib import Path
 from shutil import which
 from typing import Any
@@ -19,6 +20,7 @@ from visitor import Visitor
 from generator.archive import stored_zip
 from generator.cli import main
 from generator.emit import html
+from generator.emit.canopen import object_dictionaries
 from generator.model import Device, Model
 
 LIBRARIES = ("c", "python", "rust")
@@ -283,6 +285,90 @@ def test_the_rust_archive_is_a_crate(unpacked: dict[str, Path], tmp_path: Path) 
     command = [cargo, "check", "--quiet", "--offline", "--lib", "--target-dir", str(tmp_path)]
     done = subprocess.run(command, cwd=unpacked["rust"], capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr
+
+
+# What belongs to an entry
+
+
+def related(page: Any) -> dict[str, Any]:
+    """What an entry says of related things, by its labels."""
+    rows = page.xpath('//article//dl[@class="related"]/div')
+    return {text(row.find("dt")): row.find("dd") for row in rows}
+
+
+def test_entries_lead_to_the_places_that_name_them(model: Model, parsed: dict[str, Any]) -> None:
+    found = 0
+    for device in model.devices:
+        numbers = {code.number: code.twin_of for code in device.codes}
+        for table in device.tables:
+            words = " ".join([table.name, *(str(cell) for row in table.rows for cell in row), *table.notes])
+            for number in {int(name) for name in re.findall(r"\bC(\d{5})\b", words)} & numbers.keys():
+                page = next(
+                    p for n in (number, numbers[number]) if (p := parsed.get(f"{device.id}-c{n:05d}.html")) is not None
+                )
+                assert f"{device.id}-tables.html#table-{table.id}" in related(page)["Named in"].xpath(".//a/@href")
+                found += 1
+    assert found > 50
+    for page in parsed.values():
+        for value in related(page).values():
+            assert all(target(parsed, href) is not None for href in value.xpath(".//a/@href") if href[0] != "#")
+
+
+def test_entries_lead_to_the_same_in_other_devices(model: Model, parsed: dict[str, Any]) -> None:
+    for device in model.devices:
+        others = [other for other in model.devices if other is not device]
+        for error in device.errors:
+            page = parsed.get(f"{device.id}-abort-0x{error.number:08x}.html") if error.kind == "sdo_abort" else None
+            same = [
+                f"{other.id}-abort-0x{error.number:08x}.html"
+                for other in others
+                for one in other.errors
+                if (one.kind, one.number) == (error.kind, error.number)
+            ]
+            if page is not None and same:
+                assert related(page)["In other devices"].xpath(".//a/@href") == same
+        for code in device.codes:
+            if code.slot is None:
+                found = related(parsed[f"{device.id}-c{code.number:05d}.html"]).get("In other devices")
+                links = [] if found is None else found.xpath(".//a/@href")
+                assert links == [
+                    f"{other.id}-c{code.number:05d}.html"
+                    for other in others
+                    for one in other.codes
+                    if one.number == code.number and other.drive is device.drive
+                ]
+
+
+def test_entries_say_whether_pdos_can_carry_them(model: Model, parsed: dict[str, Any]) -> None:
+    said = set()
+    for device in model.devices:
+        mappable = {
+            entry.index: [sub.mappable for sub in entry.entries]
+            for dictionary in object_dictionaries(device)
+            for entry in dictionary.objects
+        }
+        entries = [(f"{device.id}-c{code.number:05d}.html", code.index) for code in device.codes]
+        entries += [(f"{device.id}-i-{one.index:04x}.html", one.index) for one in device.objects]
+        for name, index in entries:
+            value = related(parsed[name]).get("In EDS and XDD") if name in parsed else None
+            if name in parsed:
+                assert (value is None) == (index not in mappable), name
+            if value is not None:
+                said.add(text(value))
+                assert text(value).startswith("PDOs can carry") == any(mappable[index]), name
+    assert len(said) > 1
+
+
+def test_an_error_that_its_twin_does_not_equal_leads_to_it(model: Model) -> None:
+    device = model.devices[0]
+    first = next(error for error in device.errors if error.slot and error.causes)
+    changed = tuple(replace(e, causes=("something else",)) if e is first else e for e in device.errors)
+    pages = html.render(replace(model, devices=(replace(device, errors=changed),)))
+    page = lxml.html.fromstring(pages[f"{device.id}-e-0x{first.number:08x}.html"].text)
+    offsets = {slot.name: slot.error_offset for slot in device.slots}
+    numbers = {first.number - offsets[first.slot or ""] + offset for offset in offsets.values()} - {first.number}
+    links = related(page)["In the other slot"].xpath(".//a/@href")
+    assert links == [f"{device.id}-e-0x{number:08x}.html" for number in numbers]
 
 
 # Errata and filters

@@ -28,6 +28,7 @@ from generator.emit.html.objects import object_entry, object_group
 from generator.emit.html.overview import overview
 from generator.emit.html.panel import led_group, switch_group
 from generator.emit.html.places import code_entries, code_id, error_entries, error_id, errors_group, object_id, page_of
+from generator.emit.html.relations import Relations
 from generator.emit.html.tables import formula_group, table_groups
 from generator.emit.html.telegrams import example_group, layout_group
 from generator.emit.html.text import COVERAGE, DOWNLOADS, ERRATA, INDEX, NONE, NOT_FOUND, Piece, plain
@@ -115,7 +116,7 @@ def pages(model: Model, offered: Offered) -> Iterator[Page]:
     yield _downloads(model, offered)
     yield _not_found(model, devices)
     for links in devices:
-        yield from _device_pages(model, links, offered)
+        yield from _device_pages(model, links, Relations(links, devices), offered)
 
 
 def _index(model: Model, devices: Sequence[Links]) -> Page:
@@ -150,7 +151,7 @@ def _coverage(model: Model) -> Page:
     return Page(frame, "coverage", CoverageView(coverage(model)))
 
 
-def _device_pages(model: Model, links: Links, offered: Offered) -> Iterator[Page]:
+def _device_pages(model: Model, links: Links, relations: Relations, offered: Offered) -> Iterator[Page]:
     device = links.device
     files = FilesView(
         (*device_downloads(device, offered), *packages(offered)), file_sections(links.on(page_of(device, "files")))
@@ -192,7 +193,7 @@ def _device_pages(model: Model, links: Links, offered: Offered) -> Iterator[Page
         )
         yield Page(frame, "part", PartView(_LEADS.get(part, ""), groups, blinks=part == "leds", filter=found))
         if part in _FILTERED:
-            yield from _entry_pages(model, links, nav, part)
+            yield from _entry_pages(model, links, relations, nav, part)
     if device.drive:
         frame = device_frame(
             model, device, nav, part="drive", title=device.drive.title, description=f"{device.drive.title}: {brief}"
@@ -206,10 +207,14 @@ def _device_pages(model: Model, links: Links, offered: Offered) -> Iterator[Page
         yield Page(frame, "files", files)
 
 
-def _entry_pages(model: Model, links: Links, nav: Sequence[NavItem], part: str) -> Iterator[Page]:
+def _entry_pages(model: Model, links: Links, relations: Relations, nav: Sequence[NavItem], part: str) -> Iterator[Page]:
     """A page for every entry of a part, each with its neighbours in the list."""
     device = links.device
-    entries = [(path, entry(links.on(path))) for path, entry in _entries(device, part)]
+    entries = [
+        (path, more(links=seen, entry=entry(seen)))
+        for path, entry, more in _entries(device, relations, part)
+        for seen in [links.on(path)]
+    ]
     pieces = [Piece(_named(entry), path) for path, entry in entries]
     around = zip([None, *pieces], [*pieces[1:], None], strict=False)
     for (_, entry), piece, neighbours in zip(entries, pieces, around, strict=True):
@@ -226,19 +231,23 @@ def _entry_pages(model: Model, links: Links, nav: Sequence[NavItem], part: str) 
         yield Page(frame, "entry", EntryView(entry))
 
 
-def _entries(device: Device, part: str) -> Iterator[tuple[str, Callable[[Links], Entry]]]:
-    """Path and builder of the page of every entry of a part."""
+def _entries(
+    device: Device, relations: Relations, part: str
+) -> Iterator[tuple[str, Callable[[Links], Entry], Callable[..., Entry]]]:
+    """Path of the page of every entry of a part, its builder, and what adds all that has to do with it."""
     match part:
         case "codes":
             for codes in code_entries(device.codes):
-                yield page_of(device, code_id(codes[0].number)), partial(code_entry, entry=codes)
+                path = page_of(device, code_id(codes[0].number))
+                yield path, partial(code_entry, entry=codes), partial(relations.of_codes, codes)
         case "objects":
             for found in device.objects:
-                yield page_of(device, object_id(found)), partial(object_entry, entry=found)
+                path = page_of(device, object_id(found))
+                yield path, partial(object_entry, entry=found), partial(relations.of_object, found)
         case "errors":
             for errors in error_entries(device, device.errors):
-                name = error_id(errors[0].kind, errors[0].number)
-                yield page_of(device, name), partial(error_entry, entry=errors)
+                path = page_of(device, error_id(errors[0].kind, errors[0].number))
+                yield path, partial(error_entry, entry=errors), partial(relations.of_errors, errors)
 
 
 def _named(entry: Entry) -> str:
