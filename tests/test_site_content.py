@@ -21,6 +21,7 @@ from generator.archive import stored_zip
 from generator.cli import main
 from generator.emit import html
 from generator.emit.canopen import object_dictionaries
+from generator.emit.environment import TEMPLATES
 from generator.model import Device, Model
 
 LIBRARIES = ("c", "python", "rust")
@@ -470,6 +471,54 @@ def test_without_scripts_there_is_no_filter_but_every_row(browser: Browser, site
     assert not page.locator(".filter").is_visible()
     assert page.locator("table.ledger > tbody > tr:visible").count() == sum(len(d.errata) for d in model.devices)
     context.close()
+
+
+# Paper
+
+
+@pytest.fixture(params=[("A4", 210, 297), ("Letter", 215.9, 279.4)], ids=lambda paper: paper[0])
+def paper(request: pytest.FixtureRequest) -> tuple[str, int, int]:
+    """A size of paper by its name, and width and height of what the margins of the style sheet leave, in pixels."""
+    name, width, height = request.param
+    style = (TEMPLATES / "html/style.css.j2").read_text(encoding="utf-8")
+    top, right, bottom = map(int, re.findall(r"@page { margin: (\d+)mm (\d+)mm (\d+)mm", style)[0])
+    return name, int((width - 2 * right) * 96 / 25.4), int((height - top - bottom) * 96 / 25.4)
+
+
+def test_sheets_fill_their_pages_and_no_more(visitor: Visitor, model: Model, paper: tuple[str, int, int]) -> None:
+    name, width, height = paper
+    for device in model.devices:
+        page = visitor.open(f"{device.id}-sheet.html")
+        page.emulate_media(media="print")
+        page.set_viewport_size({"width": width, "height": height})
+        ends = page.evaluate(
+            "[...document.querySelectorAll('table, dl, h2')].map(e => e.getBoundingClientRect().right)"
+        )
+        assert ends and max(ends) <= width + 1
+        filled = page.evaluate("document.documentElement.scrollHeight") / height
+        pages = len(re.findall(rb"/Type /Page\b", page.pdf(format=name)))
+        assert filled * 0.9 <= pages <= filled * 1.12 + 1, (device.id, pages, filled)
+
+
+def test_sheets_hold_what_one_looks_up(model: Model, parsed: dict[str, Any], site: Path) -> None:
+    style = (site / "style.css").read_text(encoding="utf-8")
+    for device in model.devices:
+        page = parsed[f"{device.id}-sheet.html"]
+        (sheet,) = page.xpath(f'//div[@class="sheet sheet-{device.id}"]')
+        words = text(sheet)
+        for code in device.codes:
+            assert f"{code.index}\N{NO-BREAK SPACE}=" in sheet.text_content() and code.designation in words
+        for error in device.errors:
+            assert f"0x{error.number:0{8 if error.number > 0xFFFF else 4}x}" in words
+            assert all(" ".join(remedy.split()) in words for remedy in error.remedies)
+        for lamps in device.indicators:
+            assert all(row.state in words for row in lamps.rows)
+        for group in device.switches:
+            assert group.name in words
+        for found in device.objects:
+            assert found.designation in words and found.name in words
+        assert f"body:has(.sheet-{device.id}) {{ page: sheet-{device.id}; }}" in style
+        assert device.manual.id in style.partition(f"@page sheet-{device.id} ")[2].partition("}")[0]
 
 
 # Publishing

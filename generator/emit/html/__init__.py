@@ -14,6 +14,7 @@ from generator.emit.environment import render as fill
 from generator.emit.html.downloads import FOLDER, NO_FILES, Offered, Stored
 from generator.emit.html.lamps import animations
 from generator.emit.html.pages import pages
+from generator.emit.html.sheet import running_heads
 from generator.emit.html.text import INDEX, NOT_FOUND
 from generator.model import Model
 
@@ -35,7 +36,7 @@ def render(model: Model, offered: Offered = NO_FILES, url: str = "") -> dict[str
     Raises:
         EmitError: A file that the pages describe cannot be written.
     """
-    outputs = {"style.css": fill("html/style.css.j2", animations=animations(model))}
+    outputs = {"style.css": fill("html/style.css.j2", animations=animations(model), heads=running_heads(model))}
     for page in pages(model, offered):
         frame = replace(page.frame, canonical=canonical(url, page.frame.path))
         outputs[frame.path] = fill(f"html/{page.template}.html.j2", frame=frame, page=page.view)

@@ -29,6 +29,8 @@ from generator.emit.html.overview import overview
 from generator.emit.html.panel import led_group, switch_group
 from generator.emit.html.places import code_entries, code_id, error_entries, error_id, errors_group, object_id, page_of
 from generator.emit.html.relations import Relations
+from generator.emit.html.sheet import PART as SHEET
+from generator.emit.html.sheet import has_sheet, sheet
 from generator.emit.html.tables import formula_group, table_groups
 from generator.emit.html.telegrams import example_group, layout_group
 from generator.emit.html.text import COVERAGE, DOWNLOADS, ERRATA, INDEX, NONE, NOT_FOUND, Piece, plain
@@ -47,6 +49,7 @@ _TITLES = {
     "drive": "Base drive",
     "errata": "Errata",
     "files": "Downloads",
+    SHEET: "Sheet to print",
 }
 """Parts of the reference of a device in the order of its navigation."""
 _LEADS = {
@@ -163,12 +166,10 @@ def _device_pages(model: Model, links: Links, relations: Relations, offered: Off
         "errors": len(device.errors),
         "errata": len(device.errata),
     }
-    known = {
-        "",
-        *parts,
-        *(["drive"] if device.drive else []),
-        *(["files"] if files.downloads or files.sections else []),
-    }
+    known = {"", *parts}
+    known |= {"drive"} if device.drive else set()
+    known |= {"files"} if files.downloads or files.sections else set()
+    known |= {SHEET} if has_sheet(device) else set()
     nav = [
         NavItem(title, page_of(device, part), str(counts.get(part, "")))
         for part, title in _TITLES.items()
@@ -205,6 +206,12 @@ def _device_pages(model: Model, links: Links, relations: Relations, offered: Off
         )
         frame = device_frame(model, device, nav, part="files", title=_TITLES["files"], description=description)
         yield Page(frame, "files", files)
+    if SHEET in known:
+        description = (
+            f"The {device.title} on paper: switches, LEDs, errors with remedies, codes with index and default."
+        )
+        frame = device_frame(model, device, nav, part=SHEET, title=f"{device.title} on paper", description=description)
+        yield Page(frame, "sheet", sheet(links.on(frame.path)))
 
 
 def _entry_pages(model: Model, links: Links, relations: Relations, nav: Sequence[NavItem], part: str) -> Iterator[Page]:
