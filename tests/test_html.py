@@ -802,10 +802,10 @@ def test_first_page_lists_devices_and_sources(model: Model, pages: dict[str, Pag
     cards = with_class(page.root, "card")
     assert [cast(Element, card.find("h3/a")).get("href") for card in cards] == [f"{d.id}.html" for d in model.devices]
     for device, card in zip(model.devices, cards, strict=True):
-        shown = {a.get("href") or "": text(a.find("b")) for a in card.iter("a") if a.find("b") is not None}
+        figures = {a.get("href") or "": text(a.find("b")) for a in card.iter("a") if a.find("b") is not None}
         for part in ("codes", "objects", "errors", "errata"):
             count = len(getattr(device, part))
-            assert shown.get(f"{device.id}-{part}.html", "0") == str(count)
+            assert figures.get(f"{device.id}-{part}.html", "0") == str(count)
         assert device.title in text(card) and device.order_code in text(card) and device.bus in text(card)
     sources = {text(row["Source"]): row for row in table(page.root, "sources")}
     assert sources.keys() == {manual.id for manual in model.manuals}

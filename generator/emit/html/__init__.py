@@ -15,6 +15,7 @@ from generator.emit.html.downloads import FOLDER, NO_FILES, Offered, Stored
 from generator.emit.html.lamps import animations
 from generator.emit.html.pages import pages
 from generator.emit.html.search import search_data
+from generator.emit.html.sheet import running_heads
 from generator.emit.html.text import INDEX, NOT_FOUND
 from generator.model import Model
 
@@ -36,7 +37,7 @@ def render(model: Model, offered: Offered = NO_FILES, url: str = "") -> dict[str
     Raises:
         EmitError: A file that the pages describe cannot be written.
     """
-    outputs = {"style.css": fill("html/style.css.j2", animations=animations(model))}
+    outputs = {"style.css": fill("html/style.css.j2", animations=animations(model), heads=running_heads(model))}
     site = tuple(pages(model, offered))
     outputs["search-data.js"] = search_data(model, [page.frame for page in site])
     for page in site:

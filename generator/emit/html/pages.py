@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
-from functools import partial
+from typing import TypeVar
 
 from generator.emit.html.blocks import Entry, Fact, Group
 from generator.emit.html.codenames import code_names, object_names
@@ -32,10 +32,17 @@ from generator.emit.html.objects import object_entry, object_group
 from generator.emit.html.overview import overview
 from generator.emit.html.panel import led_group, switch_group
 from generator.emit.html.places import code_entries, code_id, error_entries, error_id, errors_group, object_id, page_of
+from generator.emit.html.relations import Relations
+from generator.emit.html.sheet import PART as SHEET
+from generator.emit.html.sheet import has_sheet, sheet
 from generator.emit.html.tables import formula_group, table_groups
 from generator.emit.html.telegrams import example_group, layout_group
 from generator.emit.html.text import CONTENTS, COVERAGE, DOWNLOADS, ERRATA, INDEX, NONE, NOT_FOUND, Piece, plain
 from generator.model import Code, Device, DictionaryObject, ErrorEntry, Model
+
+T = TypeVar("T")
+_Builder = Callable[[Links], Entry]
+"""Makes an entry with its links as seen from a page."""
 
 _OBJECT_KINDS = {"canopen": "CANopen object dictionary", "profidrive": "PROFIdrive parameters"}
 _TITLES = {
@@ -50,6 +57,7 @@ _TITLES = {
     "drive": "Base drive",
     "errata": "Errata",
     "files": "Downloads",
+    SHEET: "Sheet to print",
 }
 """Parts of the reference of a device in the order of its navigation."""
 _LEADS = {
@@ -142,7 +150,7 @@ def pages(model: Model, offered: Offered) -> Iterator[Page]:
     yield _not_found(model, devices)
     yield _contents(model)
     for links in devices:
-        yield from _device_pages(model, links, offered)
+        yield from _device_pages(model, links, Relations(links, devices), offered)
 
 
 def _index(model: Model, devices: Sequence[Links]) -> Page:
@@ -183,7 +191,7 @@ def _contents(model: Model) -> Page:
     return Page(frame, "contents", ContentsView(listed(model)))
 
 
-def _device_pages(model: Model, links: Links, offered: Offered) -> Iterator[Page]:
+def _device_pages(model: Model, links: Links, relations: Relations, offered: Offered) -> Iterator[Page]:
     device = links.device
     files = FilesView(
         (*device_downloads(device, offered), *packages(offered)), file_sections(links.on(page_of(device, "files")))
@@ -195,12 +203,10 @@ def _device_pages(model: Model, links: Links, offered: Offered) -> Iterator[Page
         "errors": len(device.errors),
         "errata": len(device.errata),
     }
-    known = {
-        "",
-        *parts,
-        *(["drive"] if device.drive else []),
-        *(["files"] if files.downloads or files.sections else []),
-    }
+    known = {"", *parts}
+    known |= {"drive"} if device.drive else set()
+    known |= {"files"} if files.downloads or files.sections else set()
+    known |= {SHEET} if has_sheet(device) else set()
     nav = [
         NavItem(title, page_of(device, part), str(counts.get(part, "")))
         for part, title in _TITLES.items()
@@ -230,7 +236,7 @@ def _device_pages(model: Model, links: Links, offered: Offered) -> Iterator[Page
         )
         yield Page(frame, "part", _part_view(links.on(frame.path), part, groups, found))
         if part in _FILTERED:
-            yield from _entry_pages(model, links, nav, part)
+            yield from _entry_pages(model, links, relations, nav, part)
     if device.drive:
         frame = device_frame(
             model, device, nav, part="drive", title=device.drive.title, description=f"{device.drive.title}: {brief}"
@@ -242,6 +248,12 @@ def _device_pages(model: Model, links: Links, offered: Offered) -> Iterator[Page
         )
         frame = device_frame(model, device, nav, part="files", title=_TITLES["files"], description=description)
         yield Page(frame, "files", files)
+    if SHEET in known:
+        description = (
+            f"The {device.title} on paper: switches, LEDs, errors with remedies, codes with index and default."
+        )
+        frame = device_frame(model, device, nav, part=SHEET, title=f"{device.title} on paper", description=description)
+        yield Page(frame, "sheet", sheet(links.on(frame.path)))
 
 
 def _part_view(links: Links, part: str, groups: tuple[Group, ...], filtered: Filter | None) -> PartView:
@@ -256,10 +268,10 @@ def _part_view(links: Links, part: str, groups: tuple[Group, ...], filtered: Fil
     )
 
 
-def _entry_pages(model: Model, links: Links, nav: Sequence[NavItem], part: str) -> Iterator[Page]:
+def _entry_pages(model: Model, links: Links, relations: Relations, nav: Sequence[NavItem], part: str) -> Iterator[Page]:
     """A page for every entry of a part, each with its neighbours in the list."""
     device = links.device
-    entries = [(path, entry(links.on(path)), names) for path, entry, names in _entries(device, part)]
+    entries = [(path, entry(links.on(path)), names) for path, entry, names in _entries(device, relations, part)]
     pieces = [Piece(_named(entry), path) for path, entry, _ in entries]
     around = zip([None, *pieces], [*pieces[1:], None], strict=False)
     for (_, entry, names), piece, neighbours in zip(entries, pieces, around, strict=True):
@@ -276,21 +288,26 @@ def _entry_pages(model: Model, links: Links, nav: Sequence[NavItem], part: str) 
         yield Page(frame, "entry", EntryView(entry, names))
 
 
-def _entries(device: Device, part: str) -> Iterator[tuple[str, Callable[[Links], Entry], tuple[Fact, ...]]]:
+def _entries(device: Device, relations: Relations, part: str) -> Iterator[tuple[str, _Builder, tuple[Fact, ...]]]:
     """Path and builder of the page of every entry of a part, and what generated code calls the entry."""
     match part:
         case "codes":
             for codes in code_entries(device.codes):
                 path = page_of(device, code_id(codes[0].number))
-                yield path, partial(code_entry, entry=codes), code_names(device, codes)
+                yield path, _related(code_entry, relations.of_codes, codes), code_names(device, codes)
         case "objects":
             for found in device.objects:
                 path = page_of(device, object_id(found))
-                yield path, partial(object_entry, entry=found), object_names(device, found)
+                yield path, _related(object_entry, relations.of_object, found), object_names(device, found)
         case "errors":
             for errors in error_entries(device, device.errors):
-                name = error_id(errors[0].kind, errors[0].number)
-                yield page_of(device, name), partial(error_entry, entry=errors), ()
+                path = page_of(device, error_id(errors[0].kind, errors[0].number))
+                yield path, _related(error_entry, relations.of_errors, errors), ()
+
+
+def _related(build: Callable[[Links, T], Entry], add: Callable[[T, Links, Entry], Entry], thing: T) -> _Builder:
+    """Builder of an entry with all that has to do with it."""
+    return lambda links: add(thing, links, build(links, thing))
 
 
 def _named(entry: Entry) -> str:
