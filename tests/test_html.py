@@ -244,7 +244,7 @@ def pages(outputs: dict[str, str]) -> dict[str, Page]:
     return {path: Page(source) for path, source in outputs.items() if path.endswith(".html")}
 
 
-PARTS = ("codes", "objects", "errors", "leds", "switches", "telegrams", "tables", "drive", "errata", "files")
+PARTS = ("codes", "objects", "errors", "leds", "switches", "telegrams", "tables", "drive", "errata", "files", "sheet")
 
 
 PART_OF = {
