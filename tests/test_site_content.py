@@ -506,6 +506,7 @@ def test_sheets_hold_what_one_looks_up(model: Model, parsed: dict[str, Any], sit
         page = parsed[f"{device.id}-sheet.html"]
         (sheet,) = page.xpath(f'//div[@class="sheet sheet-{device.id}"]')
         words = text(sheet)
+        assert all(target(parsed, href) is not None for href in sheet.xpath(".//a/@href"))
         for code in device.codes:
             assert f"{code.index}\N{NO-BREAK SPACE}=" in sheet.text_content() and code.designation in words
         for error in device.errors:

@@ -1,7 +1,7 @@
 """One page for each device that is made for paper: what one needs at the machine, without the reasons and sources."""
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from generator.emit.html.blocks import Fact, Row, Table
 from generator.emit.html.codes import code_group
@@ -11,7 +11,7 @@ from generator.emit.html.lamps import words
 from generator.emit.html.links import Links
 from generator.emit.html.objects import object_entry
 from generator.emit.html.panel import switch_entry
-from generator.emit.html.places import code_entries, error_entries, error_id, error_text
+from generator.emit.html.places import code_entries, error_entries, error_id, error_text, page_of
 from generator.emit.html.text import NONE, Piece, Prose, hexadecimal, joined, noted, plain, through
 from generator.model import Code, Device, ErrorEntry, IndicatorTable, Model, SwitchGroup
 
@@ -109,8 +109,19 @@ def _switches(links: Links, group: SwitchGroup) -> Part:
     """Switches; where weights say it all, without the positions of every value."""
     entry = switch_entry(links, group)
     tables = () if group.weights else entry.columns
-    facts = tuple(fact for fact in entry.facts if fact.label != "Source")
+    page = page_of(links.device, "switches")
+    facts = tuple(Fact(fact.label, _seen_from_here(fact.value, page)) for fact in entry.facts if fact.label != "Source")
     return Part(f"switch-{group.id}", f"DIP switches: {group.name}", facts, tuple(map(_without_ids, tables)))
+
+
+def _seen_from_here(text: Prose, page: str) -> Prose:
+    """Text of another page, its links within that page led there."""
+    if isinstance(text, str):
+        return text
+    return tuple(
+        replace(piece, href=page + piece.href) if isinstance(piece, Piece) and piece.href.startswith("#") else piece
+        for piece in text
+    )
 
 
 def _without_ids(table: Table) -> Table:
