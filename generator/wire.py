@@ -62,7 +62,7 @@ def carries(service: Service, data_type: DataType, type_name: str = "") -> bool:
     call = Call(data_type=data_type, type_name=type_name)
     try:
         for choice in (found for message in service.messages for found in _choices(message)):
-            _chosen(choice, call)
+            chosen(choice, call)
     except CodecError:
         return False
     return True
@@ -102,7 +102,7 @@ def build(service: Service, message: Message, layouts: Layouts, call: Call) -> T
 
 
 def _layout(message: Message, call: Call) -> str:
-    return message.layout if isinstance(message.layout, str) else str(_chosen(message.layout, call))
+    return message.layout if isinstance(message.layout, str) else str(chosen(message.layout, call))
 
 
 def _counts(fillings: Fillings) -> list[tuple[str, str]]:
@@ -110,17 +110,27 @@ def _counts(fillings: Fillings) -> list[tuple[str, str]]:
     return [(name, f.field) for name, f in fillings if isinstance(f, Filler) and f.what is What.BEHIND]
 
 
-def _chosen(filling: Filling, call: Call) -> Filling:
-    """What a choice comes to: by the name of the type, by its length, or what is left for the others."""
+def chosen(filling: Filling, call: Call) -> Filling:
+    """What a choice comes to: by the name of the type, by its length, or what is left for the others.
+
+    Raises:
+        CodecError: The choice has no case for the data type.
+    """
     if not isinstance(filling, Choice):
         return filling
-    cases = {key.replace("_", ""): found for key, found in filling.cases}
-    for key in (call.type_name, call.data_type.canopen_name, str(call.data_type.bits // 8)):
-        if key.replace("_", "") in cases:
-            return _chosen(cases[key.replace("_", "")], call)
+    key = case_of(filling, call)
+    if key is not None:
+        return chosen(dict(filling.cases)[key], call)
     if filling.otherwise is None:
         raise CodecError(f"values of the type {call.type_name or call.data_type.canopen_name} are not carried")
-    return _chosen(filling.otherwise, call)
+    return chosen(filling.otherwise, call)
+
+
+def case_of(choice: Choice, call: Call) -> str | None:
+    """The case for a data type: by its name, by that of CiA 301 or by its length; ``None`` where there is none."""
+    cases = {key.replace("_", ""): key for key, _ in choice.cases}
+    names = (call.type_name, call.data_type.canopen_name, str(call.data_type.bits // 8))
+    return next((found for name in names if (found := cases.get(name.replace("_", "")))), None)
 
 
 def _values(fillings: Fillings, fields: Sequence[Field], call: Call) -> Values:
@@ -129,9 +139,9 @@ def _values(fillings: Fillings, fields: Sequence[Field], call: Call) -> Values:
     for target in fields:
         parts = [(part, given[name]) for part in target.bits if (name := f"{target.name}.{part.label}") in given]
         if target.name in given:
-            values[target.name] = _value(_chosen(given[target.name], call), target, target.name, call)
+            values[target.name] = _value(chosen(given[target.name], call), target, target.name, call)
         elif parts:
-            numbers = [_value(_chosen(f, call), target, f"{target.name}.{p.label}", call) for p, f in parts]
+            numbers = [_value(chosen(f, call), target, f"{target.name}.{p.label}", call) for p, f in parts]
             known = [number for number in numbers if isinstance(number, int)]
             if len(known) < len(numbers):
                 values[target.name] = OPEN
@@ -263,21 +273,21 @@ def _read(
 ) -> None:
     targets = {target.name: target for target in fields}
     for name, filling in fillings:
-        chosen = _chosen(filling, like)
+        decided = chosen(filling, like)
         value = values.get(name, OPEN)
         target = targets.get(name.partition(".")[0])
-        if isinstance(chosen, tuple) and isinstance(value, tuple) and target is not None:
-            for inner, entry in zip(chosen, value, strict=False):
+        if isinstance(decided, tuple) and isinstance(value, tuple) and target is not None:
+            for inner, entry in zip(decided, value, strict=False):
                 _read(inner, target.fields, entry, like, found, free)
-        elif isinstance(chosen, Filler) and target is not None:
+        elif isinstance(decided, Filler) and target is not None:
             known = None if value == OPEN or isinstance(value, tuple) else _bytes_or_number(value, target, like)
-            if chosen.what is What.FREE:
+            if decided.what is What.FREE:
                 free[name] = known if isinstance(known, int) else None
-            elif isinstance(known, int) and chosen.low is not None:
-                before = found.get(chosen.what, 0)
-                found[chosen.what] = (before if isinstance(before, int) else 0) | known << chosen.low
+            elif isinstance(known, int) and decided.low is not None:
+                before = found.get(decided.what, 0)
+                found[decided.what] = (before if isinstance(before, int) else 0) | known << decided.low
             elif known is not None:
-                found[chosen.what] = known
+                found[decided.what] = known
 
 
 def _bytes_or_number(value: int | str, target: Field, like: Call) -> int | bytes:

@@ -32,9 +32,11 @@ from generator.emit.html.objects import object_entry, object_group
 from generator.emit.html.overview import overview
 from generator.emit.html.panel import led_group, switch_group
 from generator.emit.html.places import code_entries, code_id, error_entries, error_id, errors_group, object_id, page_of
+from generator.emit.html.services import service_group
 from generator.emit.html.tables import formula_group, table_groups
 from generator.emit.html.telegrams import example_group, layout_group
 from generator.emit.html.text import CONTENTS, COVERAGE, DOWNLOADS, ERRATA, INDEX, NONE, NOT_FOUND, Piece, plain
+from generator.emit.html.wire import Bus, BusSection, code_bus, error_bus, object_bus
 from generator.model import Code, Device, DictionaryObject, ErrorEntry, Model
 
 _OBJECT_KINDS = {"canopen": "CANopen object dictionary", "profidrive": "PROFIdrive parameters"}
@@ -90,9 +92,10 @@ class PartView:
 
 @dataclass(frozen=True, slots=True)
 class EntryView:
-    """The page of one entry; ``names``: what generated code calls it."""
+    """The page of one entry, with its telegrams where it has any; ``names``: what generated code calls it."""
 
     entry: Entry
+    bus: BusSection | None
     names: tuple[Fact, ...]
 
 
@@ -259,10 +262,11 @@ def _part_view(links: Links, part: str, groups: tuple[Group, ...], filtered: Fil
 def _entry_pages(model: Model, links: Links, nav: Sequence[NavItem], part: str) -> Iterator[Page]:
     """A page for every entry of a part, each with its neighbours in the list."""
     device = links.device
-    entries = [(path, entry(links.on(path)), names) for path, entry, names in _entries(device, part)]
-    pieces = [Piece(_named(entry), path) for path, entry, _ in entries]
+    bus = Bus(model, device)
+    built = [(found, found.entry(links.on(found.path))) for found in _entries(device, part)]
+    pieces = [Piece(_named(entry), found.path) for found, entry in built]
     around = zip([None, *pieces], [*pieces[1:], None], strict=False)
-    for (_, entry, names), piece, neighbours in zip(entries, pieces, around, strict=True):
+    for (found, entry), piece, neighbours in zip(built, pieces, around, strict=True):
         frame = device_frame(
             model,
             device,
@@ -273,24 +277,36 @@ def _entry_pages(model: Model, links: Links, nav: Sequence[NavItem], part: str) 
             description=_described(device, entry, piece.text),
             neighbours=neighbours,
         )
-        yield Page(frame, "entry", EntryView(entry, names))
+        yield Page(frame, "entry", EntryView(entry, found.telegrams(links.on(found.path), bus), found.names))
 
 
-def _entries(device: Device, part: str) -> Iterator[tuple[str, Callable[[Links], Entry], tuple[Fact, ...]]]:
-    """Path and builder of the page of every entry of a part, and what generated code calls the entry."""
+@dataclass(frozen=True, slots=True)
+class _Entry:
+    """An entry to come: path of its page, what builds it and its telegrams, and what generated code calls it."""
+
+    path: str
+    entry: Callable[[Links], Entry]
+    telegrams: Callable[[Links, Bus], BusSection | None]
+    names: tuple[Fact, ...]
+
+
+def _entries(device: Device, part: str) -> Iterator[_Entry]:
+    """Every entry of a part."""
     match part:
         case "codes":
             for codes in code_entries(device.codes):
                 path = page_of(device, code_id(codes[0].number))
-                yield path, partial(code_entry, entry=codes), code_names(device, codes)
+                names = code_names(device, codes)
+                yield _Entry(path, partial(code_entry, entry=codes), partial(code_bus, entry=codes), names)
         case "objects":
             for found in device.objects:
                 path = page_of(device, object_id(found))
-                yield path, partial(object_entry, entry=found), object_names(device, found)
+                names = object_names(device, found)
+                yield _Entry(path, partial(object_entry, entry=found), partial(object_bus, entry=found), names)
         case "errors":
             for errors in error_entries(device, device.errors):
-                name = error_id(errors[0].kind, errors[0].number)
-                yield page_of(device, name), partial(error_entry, entry=errors), ()
+                path = page_of(device, error_id(errors[0].kind, errors[0].number))
+                yield _Entry(path, partial(error_entry, entry=errors), partial(error_bus, entry=errors), ())
 
 
 def _named(entry: Entry) -> str:
@@ -319,7 +335,11 @@ def _groups(links: Links, part: str) -> tuple[Group, ...]:
         case "switches":
             groups = [switch_group(links, device.switches)]
         case "telegrams":
-            groups = [layout_group(links, device.layouts), example_group(links, device.examples)]
+            groups = [
+                layout_group(links, device.layouts),
+                service_group(links, device.services),
+                example_group(links, device.examples),
+            ]
         case "tables":
             groups = [*table_groups(links, device.tables), formula_group(links, device.formulas)]
         case "errata":

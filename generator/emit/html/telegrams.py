@@ -8,7 +8,7 @@ from generator.emit.html.blocks import Anchor, Entry, Fact, Group, Item, ItemLis
 from generator.emit.html.links import Links
 from generator.emit.html.notes import named_subject, notes
 from generator.emit.html.places import named_id
-from generator.emit.html.text import NONE, Piece, Prose, hexadecimal, joined, noted, shown_origin, through
+from generator.emit.html.text import NONE, Piece, Prose, hexadecimal, joined, noted, octets, shown_origin, through
 from generator.model import BitField, Example, Field, FieldType, Layout, Option
 from generator.model.telegram import OPEN, Value
 
@@ -149,11 +149,7 @@ def _example_link(links: Links, example: Example) -> Piece:
 
 
 def _octets(data: _Octets) -> Piece:
-    return Piece(" ".join(map(_octet, data)) or NONE, tag="code")
-
-
-def _octet(octet: int | None) -> str:
-    return OPEN if octet is None else f"{octet:02X}"
+    return Piece(octets(data) or NONE, tag="code")
 
 
 def example_entry(links: Links, example: Example) -> Entry:
@@ -219,7 +215,7 @@ def _said_row(name: str, value: Value, width: int) -> Row:
 
 
 def _span_row(links: Links, layout: Layout, example: Example, span: Span) -> Row:
-    used, printed = (octets[span.start : span.stop] for octets in (example.data, example.printed))
+    used, printed = (data[span.start : span.stop] for data in (example.data, example.printed))
     name = links.named_thing("layout", layout.id, span.place, span.path)
     cells: list[Prose] = [through(str(span.start), str(span.stop - 1)) if used else NONE, (name,), (_octets(used),)]
     if example.printed != example.data:
