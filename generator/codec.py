@@ -1,6 +1,7 @@
 """Telegrams by their layout: bytes to values and values to bytes."""
 
 from collections.abc import Sequence
+from dataclasses import dataclass, replace
 
 from generator.model.telegram import OPEN, Field, FieldType, Layout, Value, Values
 
@@ -28,6 +29,64 @@ def encode(layout: Layout, values: Values) -> tuple[int | None, ...]:
         CodecError: A value is missing, too large, or of another length than an earlier field says.
     """
     return tuple(_encode_fields(layout.fields, values, dict(values)))
+
+
+@dataclass(frozen=True, slots=True)
+class Span:
+    """The bytes ``start`` ... ``stop`` - 1 of a telegram: those of one field, ``path`` being its name in the layout.
+
+    ``values`` are those of the fields beside it; ``place`` is its name in the telegram, which counts repetitions.
+    """
+
+    path: str
+    place: str
+    field: Field
+    start: int
+    stop: int
+    values: Values
+
+
+def spans(layout: Layout, data: Sequence[int | None]) -> tuple[Span, ...]:
+    """Every field with the bytes that it takes, in the order of the bytes.
+
+    Raises:
+        CodecError: The bytes do not fit the layout.
+    """
+    return tuple(_spans(layout, layout.fields, data, decode(layout, data), {}, 0, ("", "")))
+
+
+def _spans(
+    layout: Layout,
+    fields: Sequence[Field],
+    data: Sequence[int | None],
+    values: Values,
+    outer: Values,
+    start: int,
+    at: tuple[str, str],
+) -> list[Span]:
+    """Fields with the bytes that each takes; ``at`` is what stands before their names in layout and telegram."""
+    found: list[Span] = []
+    scope = {**outer, **values}
+    for field in fields:
+        path, place = at[0] + field.name, at[1] + field.name
+        value = values[field.name]
+        if isinstance(value, tuple):
+            for number, entry in enumerate(value, 1):
+                inner = (f"{path}.", f"{place}[{number}].")
+                found += _spans(layout, field.fields, data, entry, scope, start, inner)
+                start = found[-1].stop
+            continue
+        stop = start + _size(layout, field, value, scope, len(data) - start)
+        found.append(Span(path, place, field, start, stop, values))
+        start = stop
+    return found
+
+
+def _size(layout: Layout, field: Field, value: Value, scope: Values, left: int) -> int:
+    """How many bytes a field takes: as many as it encodes to."""
+    if value == OPEN and field.length is None and field.sizes is None:
+        return left
+    return len(encode(replace(layout, fields=(field,)), {**scope, field.name: value}))
 
 
 def _decode_fields(

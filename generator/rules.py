@@ -57,6 +57,7 @@ RULES: dict[str, str] = {
     "standard-access": "Accesses are among those that the standard allows.",
     "telegram-bytes": "The printed bytes of an example are those that its values encode to.",
     "telegram-values": "An example decodes by its layout to its values, and encodes again.",
+    "telegram-service": "An example in a layout that a service uses is one that the service builds.",
     "formula-example": "The worked examples of a formula give the printed result.",
     "switch-row": "The weights of the switches that are ON add up to the value of the row.",
     "switch-distinct": "No two rows of a group of switches have the same position.",

@@ -22,6 +22,7 @@ from generator.model import (
     Access,
     Bit,
     Chapter,
+    Choice,
     Code,
     CodeCounts,
     CodeRef,
@@ -47,6 +48,7 @@ from generator.model import (
     PrintedIndex,
     PrintedNumber,
     Range,
+    Service,
     SubCode,
     SubIndex,
     SwitchRow,
@@ -315,6 +317,7 @@ def broken_links(pages: dict[str, Page]) -> Iterator[str]:
             if href.startswith(("https://", "http://", "files/")):
                 continue
             target, _, fragment = href.partition("#")
+            target = target.partition("?")[0]
             if not href or (target and target not in pages) or (fragment and fragment not in pages[target or path].ids):
                 yield f"{path}: {href!r}"
 
@@ -886,6 +889,7 @@ def named(device: Device) -> dict[str, Any]:
         ("formula", device.formulas),
         ("layout", device.layouts),
         ("telegram", device.examples),
+        ("service", device.services),
     )
     return {f"{kind}-{entry.id}": entry for kind, entries in kinds for entry in cast(tuple[Any, ...], entries)}
 
@@ -909,7 +913,7 @@ def test_named_things_have_entries_citations_and_errata(panels: list[tuple[Devic
 
 
 def brief(device: Device, thing: Any) -> str:
-    """Last cell of the overview: bytes, expression, or a count of rows or examples."""
+    """Last cell of the overview: bytes, expression, layouts, or a count of rows or examples."""
     match thing:
         case Example():
             return " ".join("XX" if octet is None else f"{octet:02X}" for octet in thing.data)
@@ -917,8 +921,17 @@ def brief(device: Device, thing: Any) -> str:
             return thing.expression
         case Layout():
             return str(sum(example.layout == thing.id for example in device.examples))
+        case Service():
+            return answer_layouts(thing)
         case _:
             return str(len(thing.rows))
+
+
+def answer_layouts(service: Service) -> str:
+    if service.answer is None:
+        return NOTHING
+    layout = service.answer.layout
+    return ", ".join(str(name) for _, name in layout.cases) if isinstance(layout, Choice) else layout
 
 
 MARKS = {
@@ -1476,6 +1489,7 @@ def test_the_largest_page_stays_light(outputs: dict[str, str]) -> None:
 POISON = "<script>alert('1')</script>&amp;\"'"
 KEPT = {
     Chapter: {"status"},
+    Choice: {"cases"},
     Device: {"id"},
     DictionaryObject: {"kind", "object_type"},
     ErrorEntry: {"kind"},
@@ -1485,6 +1499,8 @@ KEPT = {
     PrintedNumber: {"place"},
     Keyword: {"name"},
     Manual: {"kind"},
+    Service: {"errors", "reaches"},
+    SubIndex: {"access", "printed_access"},
     SwitchRow: {"positions", "value"},
     Delivered: {"positions"},
     CodeCounts: {"positions"},
@@ -1560,7 +1576,8 @@ def test_text_of_the_model_is_escaped(model: Model) -> None:
 
 def test_text_of_gsd_files_is_escaped(model: Model) -> None:
     found = next(device for device in model.devices if device.gsd)
-    cut = dataclasses.replace(found, codes=(), objects=(), errors=(), tables=(), examples=(), indicators=(), layouts=())
+    cut = dataclasses.replace(found, codes=(), objects=(), errors=(), tables=(), indicators=())
+    cut = dataclasses.replace(cut, layouts=(), services=(), examples=())
     clean = dataclasses.replace(model, devices=(cut,))
     path = f"{found.id}-files.html"
     before, after = (Page(html.render(each)[path].text) for each in (clean, poisoned(clean)))
@@ -1589,6 +1606,7 @@ def test_a_device_may_lack_everything(model: Model) -> None:
         tables=(),
         formulas=(),
         layouts=(),
+        services=(),
         examples=(),
         errata=(),
         drive=None,

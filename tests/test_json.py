@@ -127,6 +127,14 @@ def _compare_telegrams(groups: Any, device: Device) -> None:
     for example in device.examples:
         octets = examples[example.id]["bytes"]
         assert show(tuple(octets)) == show(example.data)
+    services = {s["id"]: s for group in groups for s in group["services"]}
+    assert services.keys() == {s.id for s in device.services}
+    for service in device.services:
+        found = services[service.id]
+        assert (found["does"], found["errors"], found["limit"]) == (service.does.value, service.errors, service.limit)
+        for message, fact in ((found["request"], service.request), (found["answer"], service.answer)):
+            assert (message is None) == (fact is None)
+            assert fact is None or list(message["values"]) == [name for name, _ in fact.values]
     layouts = {x["id"]: x for group in groups for x in group["layouts"]}
     for layout in device.layouts:
         offset: int | None = 0
@@ -141,6 +149,7 @@ def test_every_entry_has_a_citation(model: Model) -> None:
         cites = [c.cite for c in device.codes] + [o.cite for o in device.objects] + [e.cite for e in device.errors]
         cites += [t.cite for t in device.indicators] + [s.cite for s in device.switches]
         cites += [t.cite for t in device.tables] + [x.cite for x in device.layouts] + [e.cite for e in device.examples]
+        cites += [s.cite for s in device.services]
         assert all(cite.manual and cite.chapter for cite in cites)
 
 

@@ -6,13 +6,14 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from generator.model import CodeRef, ErrorRef, Light, NodeRelative, ObjectRef, Pattern, Range
+from generator.model import CodeRef, ErrorRef, Filler, Light, NodeRelative, ObjectRef, Pattern, Range, What
 from generator.notation import (
     NotationError,
     NumberRun,
     RefRun,
     attributes,
     citation,
+    filler,
     formula,
     node_relative,
     numbers,
@@ -149,3 +150,24 @@ def test_formulas_calculate(a: int, b: int, c: int, d: int) -> None:
     values = {"a": a, "b": b, "c": c, "d": d}
     assert formula("(a - b + 150) mod d")(values) == (a - b + 150) % d
     assert formula("a + b * c - 0x10")(values) == a + b * c - 16
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ("$INDEX", Filler(What.INDEX)),
+        ("$SUBINDEX", Filler(What.SUBINDEX)),
+        ("$ERROR 24...31", Filler(What.ERROR, 24, 31)),
+        ("$BEHIND res", Filler(What.BEHIND, field="res")),
+    ],
+)
+def test_filler(text: str, expected: Filler) -> None:
+    assert filler(text) == expected
+    assert str(expected) == text
+
+
+@pytest.mark.parametrize(("text", "column"), [("$INDEXES", 6), ("$BEHIND", 7), ("$ERROR 24", 9), ("$BEHIND 3", 8)])
+def test_filler_refuses(text: str, column: int) -> None:
+    with pytest.raises(NotationError) as caught:
+        filler(text)
+    assert caught.value.column == column

@@ -29,6 +29,7 @@ RULES: tuple[Callable[[Model, Device], Iterator[Finding]], ...] = (
     errors.adjustable_codes,
     telegrams.examples,
     telegrams.identifiers,
+    telegrams.services,
     telegrams.formulas,
     telegrams.switches,
     telegrams.patterns,

@@ -6,8 +6,11 @@ from itertools import combinations
 from generator.check.finding import Finding
 from generator.check.objects import missing_code
 from generator.codec import CodecError, decode, encode
-from generator.model import CodeRef, Device, Example, Layout, Model, Values
+from generator.model import Choice, CodeRef, DataType, Device, Example, Layout, Message, Model, Service, Values
 from generator.model.telegram import OPEN, Value
+from generator.wire import Call, Layouts, Octets, agree, bind, build
+
+_TO_DEVICE = "to device"
 
 _TERMINALS = "terminal"
 """Kind of the tables that list the labels on a module."""
@@ -110,6 +113,46 @@ def identifiers(model: Model, device: Device) -> Iterator[Finding]:
                 message=f"0x{example.identifier:X} is no predefined identifier of node {example.node}",
                 where=example.where,
             )
+
+
+def services(model: Model, device: Device) -> Iterator[Finding]:
+    """Rule telegram-service: an example whose layout a service uses is a telegram that a service builds."""
+    layouts = {layout.id: layout for layout in device.layouts}
+    for example in device.examples:
+        used = [
+            (service, message)
+            for service in device.services
+            for message in (service.request if example.direction == _TO_DEVICE else service.answer,)
+            if message is not None and example.layout in _layouts(message)
+        ]
+        built = [data for service, message in used for data in _rebuilt(service, message, layouts, example)]
+        if built and not any(agree(data, example.data) for data in built):
+            nearest = max(built, key=lambda data: sum(a == b for a, b in zip(data, example.data, strict=False)))
+            yield _finding(
+                "telegram-service",
+                example,
+                show(example.data),
+                show(nearest),
+                f"no service of the device builds '{example.id}'",
+            )
+
+
+def _layouts(message: Message) -> tuple[object, ...]:
+    if isinstance(message.layout, Choice):
+        return tuple(name for _, name in message.layout.cases)
+    return (message.layout,)
+
+
+def _rebuilt(service: Service, message: Message, layouts: Layouts, example: Example) -> Iterator[Octets]:
+    """What a service makes of what an example says, once for each data type that it may be about."""
+    for data_type in DataType:
+        call = bind(message, layouts, example.data, Call(data_type=data_type))
+        if call is None:
+            continue
+        try:
+            yield build(service, message, layouts, call).data
+        except CodecError:
+            continue
 
 
 def formulas(model: Model, device: Device) -> Iterator[Finding]:

@@ -23,7 +23,8 @@ def elaborate(spec: Spec, problems: Problems) -> Model:
         for name, files in spec.drives.items()
     }
     objects = tuple(o for objects, _ in standards for o in objects)
-    devices = [device(files, manuals, drives, shared, objects) for _, files in sorted(spec.devices.items())]
+    cob_ids = tuple(c for _, cob_ids in standards for c in cob_ids)
+    devices = [device(files, manuals, drives, shared, objects, cob_ids) for _, files in sorted(spec.devices.items())]
     problems.stop()
     assert spec.release is not None
     return Model(
@@ -33,6 +34,6 @@ def elaborate(spec: Spec, problems: Problems) -> Model:
         drives=tuple(drives.values()),
         manuals=tuple(manuals.values()),
         standard_objects=objects,
-        cob_ids=tuple(c for _, cob_ids in standards for c in cob_ids),
+        cob_ids=cob_ids,
         pins=tuple(pins(spec.names)) if spec.names else (),
     )

@@ -9,12 +9,14 @@ from generator.elaborate import errors as error_table
 from generator.elaborate import gsd as gsd_file
 from generator.elaborate import indicators as panel
 from generator.elaborate import objects as object_table
+from generator.elaborate import services as service_table
 from generator.elaborate import telegrams as telegram_table
 from generator.elaborate.common import known_manual, optional_text, origin
 from generator.elaborate.manuals import object_run
 from generator.model import (
     BitField,
     CanOpenFacts,
+    CobId,
     CodeRef,
     Device,
     Drive,
@@ -86,6 +88,7 @@ def device(
     drives: Mapping[str, Drive],
     shared: Mapping[str, code_table.Facts | None],
     standard: Sequence[StandardObject],
+    cob_ids: Sequence[CobId],
 ) -> Device | None:
     """A device of spec/devices, ``None`` where its manual or drive is unknown."""
     root = files["device"].root
@@ -112,6 +115,8 @@ def device(
     error_frame = error_table.Frame(slots, base, known, index)
     roots = {kind: file.root for kind, file in files.items()}
     layouts = telegram_table.layouts(roots["telegrams"], index) if "telegrams" in roots else ()
+    tables = panel.tables(roots["tables"], index) if "tables" in roots else ()
+    service_frame = service_table.Frame(layouts, tables, cob_ids, index)
     version = root.child("version")
     return Device(
         id=files["device"].stem,
@@ -135,9 +140,10 @@ def device(
         errors=error_table.errors(files["errors"].root, error_frame) if "errors" in files else (),
         indicators=panel.indicators(roots["indicators"], index) if "indicators" in roots else (),
         switches=panel.switches(roots["switches"], index) if "switches" in roots else (),
-        tables=panel.tables(roots["tables"], index) if "tables" in roots else (),
+        tables=tables,
         formulas=panel.formulas(roots["tables"], index) if "tables" in roots else (),
         layouts=layouts,
+        services=service_table.services(roots["telegrams"], service_frame) if "telegrams" in roots else (),
         examples=(
             telegram_table.examples(roots["telegrams"], {layout.id: layout for layout in layouts}, index)
             if "telegrams" in roots

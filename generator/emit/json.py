@@ -10,6 +10,7 @@ from generator.model import (
     AttributeRow,
     Bit,
     BitField,
+    Choice,
     Cite,
     Code,
     CodeCounts,
@@ -21,12 +22,16 @@ from generator.model import (
     Example,
     Field,
     FieldType,
+    Filler,
+    Filling,
+    Fillings,
     Formula,
     Gsd,
     IndicatorRow,
     IndicatorTable,
     Layout,
     Manual,
+    Message,
     Model,
     NodeRelative,
     ObjectRef,
@@ -34,6 +39,7 @@ from generator.model import (
     Pattern,
     PrintedIndex,
     Range,
+    Service,
     SubIndex,
     SwitchGroup,
     Table,
@@ -321,12 +327,13 @@ def _formula(formula: Formula) -> Json:
 
 
 def _telegrams(device: Device) -> list[Json]:
-    """Layouts and examples of each protocol, protocols in the order of the layouts."""
+    """Layouts, services and examples of each protocol, protocols in the order of the layouts."""
     protocols = {layout.id: layout.protocol for layout in device.layouts}
     return [
         {
             "protocol": protocol,
             "layouts": [_layout(layout) for layout in device.layouts if layout.protocol == protocol],
+            "services": [_service(s) for s in device.services if _protocol(s, protocols) == protocol],
             "examples": [_example(e) for e in device.examples if protocols[e.layout] == protocol],
         }
         for protocol in dict.fromkeys(protocols.values())
@@ -382,6 +389,54 @@ def _sizes(field: Field) -> Json | None:
         "sizes": {str(value): size for value, size in field.sizes.sizes},
         "times": field.sizes.times,
     }
+
+
+def _protocol(service: Service, protocols: Mapping[str, str]) -> str:
+    layouts = [message.layout for message in service.messages]
+    names = [layout if isinstance(layout, str) else str(layout.cases[0][1]) for layout in layouts]
+    return next((protocols[name] for name in names), "")
+
+
+def _service(service: Service) -> Json:
+    return {
+        "id": service.id,
+        "name": service.name,
+        "does": service.does.value,
+        "reaches": list(service.reaches),
+        "request": _message(service.request) if service.request else None,
+        "answer": _message(service.answer) if service.answer else None,
+        "errors": service.errors,
+        "limit": service.limit,
+        "description": service.description,
+        "origin": service.origin.value,
+        "cite": _cite(service.cite),
+        "errata": list(service.errata),
+    }
+
+
+def _message(message: Message) -> Json:
+    return {
+        "identifier": message.identifier,
+        "layout": _filling(message.layout),
+        "values": _fillings(message.values),
+    }
+
+
+def _fillings(fillings: Fillings) -> Json:
+    return {name: _filling(filling) for name, filling in fillings}
+
+
+def _filling(filling: Filling) -> object:
+    match filling:
+        case Filler():
+            return str(filling)
+        case Choice():
+            others = {} if filling.otherwise is None else {"else": _filling(filling.otherwise)}
+            return {key: _filling(inner) for key, inner in filling.cases} | others
+        case tuple():
+            return [_fillings(entry) for entry in filling]
+        case _:
+            return filling
 
 
 def _example(example: Example) -> Json:

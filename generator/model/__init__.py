@@ -26,6 +26,7 @@ from generator.model.indicator import (
 from generator.model.objects import CobId, DictionaryObject, StandardObject, StandardSubIndex, SubIndex
 from generator.model.pin import Pin
 from generator.model.reference import CodeRef, ErrorRef, ObjectRef
+from generator.model.service import Choice, Does, Filler, Filling, Fillings, Message, Service, What
 from generator.model.table import Column, Formula, FormulaExample, Table
 from generator.model.telegram import Example, Field, FieldType, Layout, Sizes, Values
 from generator.model.values import Bit, BitField, DataType, Default, NodeRelative, Option, Range
@@ -37,6 +38,7 @@ __all__ = [
     "BitField",
     "CanOpenFacts",
     "Chapter",
+    "Choice",
     "Cite",
     "CobId",
     "Code",
@@ -48,6 +50,7 @@ __all__ = [
     "Delivered",
     "Device",
     "DictionaryObject",
+    "Does",
     "Drive",
     "DriveCommand",
     "DriveModule",
@@ -58,6 +61,9 @@ __all__ = [
     "Example",
     "Field",
     "FieldType",
+    "Filler",
+    "Filling",
+    "Fillings",
     "Formula",
     "FormulaExample",
     "Gsd",
@@ -67,6 +73,7 @@ __all__ = [
     "Led",
     "Light",
     "Manual",
+    "Message",
     "Model",
     "NodeRelative",
     "ObjectRef",
@@ -78,6 +85,7 @@ __all__ = [
     "PrintedNumber",
     "Range",
     "Response",
+    "Service",
     "Sizes",
     "Slot",
     "StandardObject",
@@ -89,5 +97,6 @@ __all__ = [
     "SwitchRow",
     "Table",
     "Values",
+    "What",
     "Where",
 ]

@@ -10,6 +10,7 @@ from generator.model.gsd import Gsd
 from generator.model.indicator import IndicatorTable, SwitchGroup
 from generator.model.objects import CobId, DictionaryObject, StandardObject
 from generator.model.pin import Pin
+from generator.model.service import Service
 from generator.model.table import Formula, Table
 from generator.model.telegram import Example, Layout
 from generator.model.values import BitField
@@ -123,6 +124,7 @@ class Device:
     tables: tuple[Table, ...]
     formulas: tuple[Formula, ...]
     layouts: tuple[Layout, ...]
+    services: tuple[Service, ...]
     examples: tuple[Example, ...]
     errata: tuple[Erratum, ...]
     where: Where

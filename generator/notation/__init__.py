@@ -13,7 +13,7 @@ from typing import Any
 from lark import Lark, Token, Tree
 from lark.exceptions import UnexpectedInput, UnexpectedToken
 
-from generator.model import CodeRef, ErrorRef, Light, NodeRelative, ObjectRef, Pattern, Range
+from generator.model import CodeRef, ErrorRef, Filler, Light, NodeRelative, ObjectRef, Pattern, Range, What
 
 _FOLDER = Path(__file__).resolve().parent
 
@@ -38,6 +38,7 @@ _EXAMPLES = {
     "attributes": "24264 / 5EC8 | A 8 BITFIELD_8 | 1 | RW",
     "formula": "25575 - code",
     "pattern": "blink 0.2 s",
+    "filler": "$ERROR 24...31",
 }
 
 
@@ -266,3 +267,19 @@ def pattern(text: str) -> Pattern:
         flashes=int(parts["COUNT"]) if "COUNT" in parts else None,
         pause=seconds if light is Light.FLASH else None,
     )
+
+
+def filler(text: str) -> Filler:
+    """What a service puts into a field.
+
+    >>> filler("$ERROR 24...31").high
+    31
+    """
+    parts: dict[str, list[str]] = {}
+    for token in _parse("filler", text).children:
+        if isinstance(token, Token):
+            parts.setdefault(token.type, []).append(str(token))
+    if "FIELD" in parts:
+        return Filler(What.BEHIND, field=parts["FIELD"][0])
+    low, high = map(int, parts["INT"]) if "INT" in parts else (None, None)
+    return Filler(What(parts["WHAT"][0]), low, high)

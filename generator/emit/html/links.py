@@ -36,6 +36,7 @@ class Links:
                 ("formula", device.formulas),
                 ("layout", device.layouts),
                 ("telegram", device.examples),
+                ("service", device.services),
             )
             for entry in entries
         }

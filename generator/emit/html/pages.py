@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
+from functools import partial
 from typing import TypeVar
 
 from generator.emit.html.blocks import Entry, Fact, Group
@@ -33,11 +34,13 @@ from generator.emit.html.overview import overview
 from generator.emit.html.panel import led_group, switch_group
 from generator.emit.html.places import code_entries, code_id, error_entries, error_id, errors_group, object_id, page_of
 from generator.emit.html.relations import Relations
+from generator.emit.html.services import service_group
 from generator.emit.html.sheet import PART as SHEET
 from generator.emit.html.sheet import has_sheet, sheet
 from generator.emit.html.tables import formula_group, table_groups
 from generator.emit.html.telegrams import example_group, layout_group
 from generator.emit.html.text import CONTENTS, COVERAGE, DOWNLOADS, ERRATA, INDEX, NONE, NOT_FOUND, Piece, plain
+from generator.emit.html.wire import Bus, BusSection, code_bus, error_bus, object_bus
 from generator.model import Code, Device, DictionaryObject, ErrorEntry, Model
 
 T = TypeVar("T")
@@ -98,9 +101,10 @@ class PartView:
 
 @dataclass(frozen=True, slots=True)
 class EntryView:
-    """The page of one entry; ``names``: what generated code calls it."""
+    """The page of one entry, with its telegrams where it has any; ``names``: what generated code calls it."""
 
     entry: Entry
+    bus: BusSection | None
     names: tuple[Fact, ...]
 
 
@@ -271,10 +275,11 @@ def _part_view(links: Links, part: str, groups: tuple[Group, ...], filtered: Fil
 def _entry_pages(model: Model, links: Links, relations: Relations, nav: Sequence[NavItem], part: str) -> Iterator[Page]:
     """A page for every entry of a part, each with its neighbours in the list."""
     device = links.device
-    entries = [(path, entry(links.on(path)), names) for path, entry, names in _entries(device, relations, part)]
-    pieces = [Piece(_named(entry), path) for path, entry, _ in entries]
+    bus = Bus(model, device)
+    built = [(found, found.entry(links.on(found.path))) for found in _entries(device, relations, part)]
+    pieces = [Piece(_named(entry), found.path) for found, entry in built]
     around = zip([None, *pieces], [*pieces[1:], None], strict=False)
-    for (_, entry, names), piece, neighbours in zip(entries, pieces, around, strict=True):
+    for (found, entry), piece, neighbours in zip(built, pieces, around, strict=True):
         frame = device_frame(
             model,
             device,
@@ -285,24 +290,42 @@ def _entry_pages(model: Model, links: Links, relations: Relations, nav: Sequence
             description=_described(device, entry, piece.text),
             neighbours=neighbours,
         )
-        yield Page(frame, "entry", EntryView(entry, names))
+        yield Page(frame, "entry", EntryView(entry, found.telegrams(links.on(found.path), bus), found.names))
 
 
-def _entries(device: Device, relations: Relations, part: str) -> Iterator[tuple[str, _Builder, tuple[Fact, ...]]]:
-    """Path and builder of the page of every entry of a part, and what generated code calls the entry."""
+@dataclass(frozen=True, slots=True)
+class _Entry:
+    """An entry to come: path of its page, what builds it and its telegrams, and what generated code calls it."""
+
+    path: str
+    entry: _Builder
+    telegrams: Callable[[Links, Bus], BusSection | None]
+    names: tuple[Fact, ...]
+
+
+def _entries(device: Device, relations: Relations, part: str) -> Iterator[_Entry]:
+    """Every entry of a part."""
     match part:
         case "codes":
             for codes in code_entries(device.codes):
                 path = page_of(device, code_id(codes[0].number))
-                yield path, _related(code_entry, relations.of_codes, codes), code_names(device, codes)
+                names = code_names(device, codes)
+                yield _Entry(
+                    path, _related(code_entry, relations.of_codes, codes), partial(code_bus, entry=codes), names
+                )
         case "objects":
             for found in device.objects:
                 path = page_of(device, object_id(found))
-                yield path, _related(object_entry, relations.of_object, found), object_names(device, found)
+                names = object_names(device, found)
+                yield _Entry(
+                    path, _related(object_entry, relations.of_object, found), partial(object_bus, entry=found), names
+                )
         case "errors":
             for errors in error_entries(device, device.errors):
                 path = page_of(device, error_id(errors[0].kind, errors[0].number))
-                yield path, _related(error_entry, relations.of_errors, errors), ()
+                yield _Entry(
+                    path, _related(error_entry, relations.of_errors, errors), partial(error_bus, entry=errors), ()
+                )
 
 
 def _related(build: Callable[[Links, T], Entry], add: Callable[[T, Links, Entry], Entry], thing: T) -> _Builder:
@@ -336,7 +359,11 @@ def _groups(links: Links, part: str) -> tuple[Group, ...]:
         case "switches":
             groups = [switch_group(links, device.switches)]
         case "telegrams":
-            groups = [layout_group(links, device.layouts), example_group(links, device.examples)]
+            groups = [
+                layout_group(links, device.layouts),
+                service_group(links, device.services),
+                example_group(links, device.examples),
+            ]
         case "tables":
             groups = [*table_groups(links, device.tables), formula_group(links, device.formulas)]
         case "errata":

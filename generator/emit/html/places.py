@@ -18,6 +18,7 @@ _NAMED = {
     "formula": "tables",
     "layout": "telegrams",
     "telegram": "telegrams",
+    "service": "telegrams",
     "erratum": "errata",
     "drive": "drive",
 }
@@ -58,7 +59,7 @@ def erratum_id(erratum: str) -> str:
 def named_id(kind: str, name: str, part: str = "") -> str:
     """Anchor of a thing that has a name alone, and of a part of it: ``table-sub-d-pins``, ``layout-sdo.command``.
 
-    ``kind`` is as in the ledger: "led", "switch", "table", "formula", "layout" or "telegram".
+    ``kind`` is as in the ledger: "led", "switch", "table", "formula", "layout", "telegram" or "service".
     """
     return f"{kind}-{name}.{part}" if part else f"{kind}-{name}"
 

@@ -1,15 +1,15 @@
 """Layouts of telegrams and worked examples as entries of the reference."""
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
-from generator.codec import CodecError, decode, encode
+from generator.codec import CodecError, Span, spans
 from generator.emit.html.blocks import Anchor, Entry, Fact, Group, Item, ItemList, Row, Table
 from generator.emit.html.links import Links
 from generator.emit.html.notes import named_subject, notes
 from generator.emit.html.places import named_id
-from generator.emit.html.text import NONE, Piece, Prose, hexadecimal, joined, noted, shown_origin, through
-from generator.model import BitField, Example, Field, FieldType, Layout, Option, Values
+from generator.emit.html.text import NONE, Piece, Prose, hexadecimal, joined, noted, octets, shown_origin, through
+from generator.model import BitField, Example, Field, FieldType, Layout, Option
 from generator.model.telegram import OPEN, Value
 
 _LAYOUT_OVERVIEW = ("Layout", "Name", "Protocol", "Examples")
@@ -149,11 +149,7 @@ def _example_link(links: Links, example: Example) -> Piece:
 
 
 def _octets(data: _Octets) -> Piece:
-    return Piece(" ".join(map(_octet, data)) or NONE, tag="code")
-
-
-def _octet(octet: int | None) -> str:
-    return OPEN if octet is None else f"{octet:02X}"
+    return Piece(octets(data) or NONE, tag="code")
 
 
 def example_entry(links: Links, example: Example) -> Entry:
@@ -200,31 +196,16 @@ def _exchange(links: Links, example: Example) -> Iterator[Fact]:
     yield Fact("Exchange", (f"{example.sequence}: ", *joined(parts, " \N{RIGHTWARDS ARROW} ")))
 
 
-@dataclass(frozen=True, slots=True)
-class _Span:
-    """The bytes ``start`` ... ``stop`` - 1 of a telegram: those of one field, ``path`` being its name in the layout.
-
-    ``values`` are those of the fields beside it; ``place`` is its name in the telegram, which counts repetitions.
-    """
-
-    path: str
-    place: str
-    field: Field
-    start: int
-    stop: int
-    values: Values
-
-
 def _decoded(links: Links, layout: Layout, example: Example) -> Table:
     """Every field with its bytes, its value and what that means; what is printed beside what is used."""
     differs = example.printed != example.data
     head = ("Offset", "Field", "Bytes used" if differs else "Bytes", *(["Bytes printed"] if differs else []))
     try:
-        spans = _spans(layout, layout.fields, example.data, decode(layout, example.data), {}, 0, ("", ""))
+        found = spans(layout, example.data)
     except CodecError:
         rows = [_said_row(name, value, len(head)) for name, value in example.values.items()]
     else:
-        rows = [_span_row(links, layout, example, span) for span in spans]
+        rows = [_span_row(links, layout, example, span) for span in found]
     return Table("decoded", (*head, "Value", "Meaning"), tuple(rows))
 
 
@@ -233,42 +214,8 @@ def _said_row(name: str, value: Value, width: int) -> Row:
     return Row((NONE, name, *[NONE] * (width - 2), _value(value), NONE))
 
 
-def _spans(
-    layout: Layout,
-    fields: Sequence[Field],
-    data: _Octets,
-    values: Values,
-    outer: Values,
-    start: int,
-    at: tuple[str, str],
-) -> list[_Span]:
-    """Fields with the bytes that each takes; ``at`` is what stands before their names in layout and telegram."""
-    found: list[_Span] = []
-    scope = {**outer, **values}
-    for field in fields:
-        path, place = at[0] + field.name, at[1] + field.name
-        value = values[field.name]
-        if isinstance(value, tuple):
-            for number, entry in enumerate(value, 1):
-                inner = (f"{path}.", f"{place}[{number}].")
-                found += _spans(layout, field.fields, data, entry, scope, start, inner)
-                start = found[-1].stop
-            continue
-        stop = start + _size(layout, field, value, scope, len(data) - start)
-        found.append(_Span(path, place, field, start, stop, values))
-        start = stop
-    return found
-
-
-def _size(layout: Layout, field: Field, value: Value, scope: Values, left: int) -> int:
-    """How many bytes a field takes: as many as it encodes to."""
-    if value == OPEN and field.length is None and field.sizes is None:
-        return left
-    return len(encode(replace(layout, fields=(field,)), {**scope, field.name: value}))
-
-
-def _span_row(links: Links, layout: Layout, example: Example, span: _Span) -> Row:
-    used, printed = (octets[span.start : span.stop] for octets in (example.data, example.printed))
+def _span_row(links: Links, layout: Layout, example: Example, span: Span) -> Row:
+    used, printed = (data[span.start : span.stop] for data in (example.data, example.printed))
     name = links.named_thing("layout", layout.id, span.place, span.path)
     cells: list[Prose] = [through(str(span.start), str(span.stop - 1)) if used else NONE, (name,), (_octets(used),)]
     if example.printed != example.data:
@@ -295,7 +242,7 @@ def _meaning(value: Value, options: Sequence[Option]) -> str:
     return next((option.label for option in options if option.value == value), "")
 
 
-def _parts(span: _Span) -> Iterator[Item]:
+def _parts(span: Span) -> Iterator[Item]:
     """Parts of a number with their values and what these mean."""
     options = dict(span.field.bit_values)
     for part in span.field.bits:

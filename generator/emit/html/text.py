@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 
 from generator.model import DataType, Default, NodeRelative, Origin, Range
+from generator.model.telegram import OPEN
 
 NONE = "\N{EN DASH}"
 """Stands where the manual says nothing."""
@@ -112,6 +113,20 @@ def hexadecimal(value: int, bits: int = 8) -> str:
     return f"{'-' if value < 0 else ''}0x{abs(value):0{bits // 4}X}"
 
 
+def octets(data: Sequence[int | None]) -> str:
+    """Bytes in hexadecimal, those left open as the manuals mark them.
+
+    >>> octets((0x40, None))
+    '40 XX'
+    """
+    return " ".join(OPEN if octet is None else f"{octet:02X}" for octet in data)
+
+
+def quoted(text: str) -> str:
+    """Text in quotes."""
+    return f"\N{LEFT DOUBLE QUOTATION MARK}{text}\N{RIGHT DOUBLE QUOTATION MARK}"
+
+
 def shown_range(bounds: Range | None, data_type: DataType, in_hex: bool) -> str:
     """Range with its unit; bit-coded values in hexadecimal."""
     if bounds is None:
@@ -133,7 +148,7 @@ def shown_default(default: Default | None, data_type: DataType, in_hex: bool) ->
         case int():
             return hexadecimal(default, data_type.bits) if in_hex else decimal(default)
         case str():
-            return f"\N{LEFT DOUBLE QUOTATION MARK}{default}\N{RIGHT DOUBLE QUOTATION MARK}"
+            return quoted(default)
 
 
 def shown_origin(origin: Origin) -> str:
