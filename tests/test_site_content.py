@@ -155,17 +155,21 @@ def test_overviews_show_the_wanted_tables_and_lead_to_the_others(model: Model, p
 def test_steps_stand_in_the_order_of_the_work_and_lead_somewhere(model: Model, parsed: dict[str, Any]) -> None:
     for device in model.devices:
         steps = parsed[f"{device.id}.html"].xpath('//ol[@class="steps"]/li')
-        parts = [
-            {re.sub(rf"^{device.id}-|\.html.*", "", a.get("href")) for a in step.iter("a")} - {"tables"}
-            for step in steps
+        ways = [[a.get("href") for a in step.iter("a")] for step in steps]
+        wired = [table for kind in ("connector", "cable", "topology") for table in device.tables if table.kind == kind]
+        errors = dict.fromkeys(error.kind.replace("_", "-") for error in device.errors)
+        expected = [
+            [f"{device.id}-tables.html#table-{table.id}" for table in wired],
+            [href for _, href in answers(parsed["index.html"], "question-address").get(label(device), [])],
+            [f"{device.id}-files.html#canopen"] * bool(device.canopen)
+            + [f"{device.id}-files.html#profibus"] * bool(device.gsd),
+            [f"{device.id}-{part}.html" for part in ("codes", "objects") if getattr(device, part)]
+            + [f"{device.id}-telegrams.html"] * bool(device.layouts),
+            [f"{device.id}-leds.html#led-{table.id}" for table in device.indicators],
+            [f"{device.id}-errors.html#errors-{kind}" for kind in errors],
         ]
-        known = [
-            next((p for p in ("switches", "files", "codes", "objects", "leds", "errors") if p in s), "") for s in parts
-        ]
-        order = ["", "switches", "files", "codes", "objects", "leds", "errors"]
-        places = [order.index(name) for name in known if name]
-        assert places == sorted(places) and places
-        assert all(target(parsed, a.get("href")) is not None for step in steps for a in step.iter("a"))
+        assert ways == [way for way in expected if way]
+        assert all(target(parsed, href) is not None for way in ways for href in way)
 
 
 # Downloads

@@ -1,6 +1,7 @@
 """The reference as HTML: static pages that need no server and nothing from elsewhere, and read well without a script.
 
-``index.html`` is the first page, ``coverage.html`` says what became of each chapter of the sources.
+``index.html`` is the first page, ``coverage.html`` says what became of each chapter of the sources, ``errata.html``
+lists the errata of all manuals, ``downloads.html`` every file beside the pages.
 ``<device>.html`` is the overview of a device, ``<device>-codes.html`` and the like are the parts of its reference, and
 ``<device>-c13350.html`` is the page of one code, object or error.  All pages stand in one folder, so that every link
 is the name of a file.
