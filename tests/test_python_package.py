@@ -973,9 +973,9 @@ def test_an_index_erratum_says_both_figures(distribution: Path, model: Model) ->
 # Types: what checkers and editors see is what runs.
 
 
-def test_stubs_match_the_modules(distribution: Path) -> None:
+def test_stubs_match_the_modules(distribution: Path, tmp_path: Path) -> None:
     """Names, values and signatures in the stubs are those at run time, in both directions."""
-    done = run(sys.executable, "-m", "mypy.stubtest", PACKAGE, cwd=distribution, path=distribution)
+    done = run(sys.executable, "-m", "mypy.stubtest", PACKAGE, cwd=tmp_path, path=distribution)
     assert done.returncode == 0, done.stdout + done.stderr
 
 

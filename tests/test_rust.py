@@ -734,14 +734,6 @@ def test_wraps_comments_without_making_lists() -> None:
         assert re.match(r"    ///( (?![-+#] )(?!\d+[.)] )|$| - Text)", line)
 
 
-def test_refuses_two_entries_for_one_error_number(model: Model) -> None:
-    device = edge_model(model).devices[2]
-    errors = (*device.errors, replace(device.errors[2], number=3, last=3, name="Within the run"))
-    with pytest.raises(EmitError) as caught:
-        TARGET.render(replace(model, devices=(replace(device, errors=errors),)))
-    assert caught.value.rule == "error-overlap"
-
-
 @pytest.mark.parametrize("labels", [("Off", "off!"), ("Mask", "MASK")], ids=["punctuation", "case"])
 def test_a_label_that_stands_twice_gets_its_number(model: Model, labels: tuple[str, str]) -> None:
     device = edge_model(model).devices[2]

@@ -50,6 +50,7 @@ def check(model: Model, problems: Problems) -> None:
     """
     citations.check(model, problems)
     for device in model.devices:
+        errors.overlaps(device, problems)
         settle(device, [finding for rule in RULES for finding in rule(model, device)], problems)
     problems.stop()
 

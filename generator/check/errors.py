@@ -1,10 +1,25 @@
 """Checks of error numbers: printed forms, names, responses and the codes that set them."""
 
 from collections.abc import Iterator
+from itertools import pairwise
 
 from generator.check.finding import Finding
 from generator.check.objects import missing_code
+from generator.diagnostics import Problems
 from generator.model import CodeRef, Device, ErrorEntry, Model, Where
+
+
+def overlaps(device: Device, problems: Problems) -> None:
+    """Rule error-overlap: a number stands in one entry of its kind."""
+    for one, other in pairwise(sorted(device.errors, key=lambda error: (error.kind, error.number))):
+        if one.kind == other.kind and other.number <= one.last:
+            problems.add(
+                "error-overlap",
+                other.where,
+                f"{other.ref} stands in two entries of kind {one.kind}",
+                hint="leave the number to one of them",
+                other=("other entry", one.where),
+            )
 
 
 def numbers(model: Model, device: Device) -> Iterator[Finding]:

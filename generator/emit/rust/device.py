@@ -2,10 +2,8 @@
 
 from collections import Counter
 from collections.abc import Iterable, Sequence
-from itertools import pairwise
 
 from generator.emit import names
-from generator.emit.base import EmitError
 from generator.emit.environment import render
 from generator.emit.hashing import PerfectHash, perfect_hash
 from generator.emit.rust import facts, lists, words
@@ -64,7 +62,7 @@ class DeviceFiles:
         """Files by their path in the crate; a device has no module for what it lacks.
 
         Raises:
-            EmitError: Two facts want one name or number, or codes break the rule of the index.
+            EmitError: Two facts want one name, or codes break the rule of the index.
         """
         device, folder = self.device, f"src/{self.module.name}"
         files: dict[str, str] = {}
@@ -399,16 +397,6 @@ def _error_tables(device: Device) -> dict[str, list[ErrorEntry]]:
     tables: dict[str, list[ErrorEntry]] = {}
     for error in sorted(device.errors, key=lambda error: (error.kind, error.number)):
         tables.setdefault(error.kind, []).append(error)
-    for errors in tables.values():
-        for one, other in pairwise(errors):
-            if other.number <= one.last:
-                raise EmitError(
-                    "error-overlap",
-                    other.where,
-                    f"{other.ref} stands in two entries of kind {one.kind}",
-                    "leave the number to one of them",
-                    one.where,
-                )
     return tables
 
 
