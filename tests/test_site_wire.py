@@ -1,15 +1,23 @@
 """Telegrams in the reference: bytes on the pages of entries, and the instruments that build and decode them."""
 
+import random
 import re
 import struct
 from collections.abc import Callable, Iterator
 from html.parser import HTMLParser
 from pathlib import Path
+from typing import Any
 
 import pytest
+from playwright.sync_api import Browser, Page
+from test_c_telegrams import message, mutated
+from visitor import Visitor
 
+from generator.codec import CodecError, decode, encode
 from generator.emit.html.places import code_entries, error_id, object_id, page_of
-from generator.model import Code, Device, Model, NodeRelative
+from generator.model import Code, DataType, Device, Does, Example, Model, NodeRelative, Service, Values
+from generator.model.telegram import OPEN, Value
+from generator.wire import Call, Octets, build, carries
 
 NODE = 1
 """Default of the node address, for which the pages show identifiers."""
@@ -172,3 +180,412 @@ def test_read_only_entries_have_no_write(site: Path, model: Model) -> None:
         for page, codes in entries(device):
             if not codes[0].access.write:
                 assert not [name for name, _, _ in strips(site, page) if name.startswith("Write")]
+
+
+# The codec of the page against the reference
+
+
+def shared(value: Value) -> Any:
+    """A value as both codecs can say it: numbers as text with a mark, since they may be too long for JSON."""
+    if isinstance(value, tuple):
+        return [{name: shared(inner) for name, inner in entry.items()} for entry in value]
+    return None if value == OPEN else f"#{value}" if isinstance(value, int) else value
+
+
+def shared_values(values: Values) -> Any:
+    return {name: shared(value) for name, value in values.items()}
+
+
+IN_PAGE = """(jobs) => {
+    const { codec } = document.getElementById("wire-data");
+    const outs = (values) => Object.fromEntries(Object.entries(values).map(([name, value]) => [name, out(value)]));
+    const out = (value) => typeof value === "bigint" ? `#${value}` : Array.isArray(value) ? value.map(outs) : value;
+    return jobs.map(([layout, bytes]) => {
+        try {
+            const { values } = codec.decode(codec.data.layouts[layout], bytes);
+            const back = codec.encode(codec.data.layouts[layout], values);
+            return [outs(values), back];
+        } catch (error) {
+            return error.message;
+        }
+    });
+}"""
+
+
+def reference(device: Device, layout: str, data: Octets) -> Any:
+    found = next(one for one in device.layouts if one.id == layout)
+    try:
+        values = decode(found, data)
+        return [shared_values(values), list(encode(found, values))]
+    except CodecError as error:
+        return str(error)
+
+
+@pytest.mark.parametrize("name", ["e94aycca", "e94aycen", "e94aycpm", "servo931"])
+def test_the_codec_of_the_page_is_the_reference(visitor: Visitor, model: Model, name: str) -> None:
+    device = the_device(model, name)
+    jobs: list[tuple[str, Octets]] = [(example.layout, example.data) for example in device.examples]
+    rng = random.Random(name)
+    for layout in device.layouts:
+        for _ in range(40):
+            data = message(layout, rng)
+            jobs += [(layout.id, tuple(data)), (layout.id, tuple(mutated(data, rng)))]
+    found = visitor.open(f"{name}-telegrams.html").evaluate(IN_PAGE, [[kind, list(octets)] for kind, octets in jobs])
+    assert len(found) == len(jobs)
+    refused = 0
+    for (kind, octets), answer in zip(jobs, found, strict=True):
+        expected = reference(device, kind, octets)
+        assert answer == expected, (kind, octets)
+        refused += isinstance(expected, str)
+    assert 0 < refused < len(jobs)
+
+
+BUILD = """(jobs) => {
+    const { codec } = document.getElementById("wire-data");
+    return jobs.map(([id, role, call]) => {
+        const service = codec.data.services.find((one) => one.id === id);
+        for (const key of ["index", "code", "sub"]) call[key] = BigInt(call[key]);
+        if (typeof call.value === "string") call.value = BigInt(call.value);
+        const { bytes } = codec.build(service, service[role], call);
+        const again = codec.recognise(service, service[role], bytes, call);
+        return [bytes, again !== null];
+    });
+}"""
+
+
+@pytest.mark.parametrize("name", ["e94aycca", "e94aycen", "e94aycpm", "servo931"])
+def test_services_of_the_page_build_what_the_reference_builds(visitor: Visitor, model: Model, name: str) -> None:
+    device = the_device(model, name)
+    layouts = {layout.id: layout for layout in device.layouts}
+    rng = random.Random(name)
+    jobs, expected = [], []
+    for service, kind in combinations(device, rng):
+        value = rng.randint(kind.lowest, kind.highest) if kind.is_number else rng.randbytes(rng.randrange(20))
+        call = Call(
+            data_type=kind,
+            index=rng.randrange(1 << 16),
+            code=rng.randrange(24576),
+            subindex=rng.randrange(9),
+            value=value,
+        )
+        shown = {"type": kind.canopen_name, "index": call.index, "code": call.code, "sub": call.subindex}
+        sent = list(value) if isinstance(value, bytes) else str(value)
+        for role, telegram in (("request", service.request), ("answer", service.answer)):
+            if telegram is not None:
+                jobs.append([service.id, role, {**shown, "value": sent}])
+                expected.append([list(build(service, telegram, layouts, call).data), True])
+    assert visitor.open(f"{name}-telegrams.html").evaluate(BUILD, jobs) == expected
+
+
+def combinations(device: Device, rng: random.Random) -> Iterator[tuple[Service, DataType]]:
+    for service in device.services:
+        if service.does in (Does.READ, Does.WRITE):
+            for kind in DataType:
+                if carries(service, kind):
+                    yield from [(service, kind)] * rng.randint(3, 6)
+
+
+# The instruments, used as a visitor uses them
+
+
+def fill(page: Page, **values: str) -> None:
+    """Fill in controls of the builder by their names."""
+    for name, value in values.items():
+        control = page.locator(f"#b-{name.replace('__', '.')}".replace(".", "\\."))
+        if control.evaluate("control => control.tagName") == "SELECT":
+            control.select_option(value)
+        else:
+            control.fill(value)
+
+
+def built(page: Page) -> str:
+    return page.locator("#builder .telegram-bytes").inner_text()
+
+
+def example_of(model: Model, device: str, name: str) -> Example:
+    return next(example for example in the_device(model, device).examples if example.id == name)
+
+
+@pytest.mark.parametrize(
+    ("device", "example", "controls"),
+    [
+        ("e94aycca", "read-c00061-request", {"service": "sdo-read", "code": "C00061"}),
+        (
+            "e94aycca",
+            "write-c00088-request",
+            {"service": "sdo-write", "code": "C00088", "type": "UNSIGNED32", "scaling": "10", "value": "10.2"},
+        ),
+        ("e94aycca", "block-request-1", {"service": "sdo-read-block", "code": "C00099", "type": "VISIBLE_STRING"}),
+        ("e94aycca", "sdo2-rx-write", {"service": "sdo-write", "code": "I-1201/1", "value": "0x644"}),
+        ("e94aycca", "sdo2-tx-write", {"service": "sdo-write", "code": "1201h/2", "value": "0x5C4"}),
+        ("servo931", "read-6093-request", {"service": "sdo-read", "code": "I-6093/1"}),
+        ("servo931", "write-6093-request", {"service": "sdo-write", "code": "0x6093/1", "value": "216000"}),
+        ("e94aycpm", "drivecom-read-c00061-request", {"service": "drivecom-read", "code": "C00061"}),
+        (
+            "e94aycpm",
+            "drivecom-write-c00105-request",
+            {
+                "service": "drivecom-write",
+                "code": "C00105",
+                "type": "UNSIGNED32",
+                "scaling": "1000",
+                "value": "0.05",
+                "service__handshake": "1",
+            },
+        ),
+        ("e94aycpm", "dpv1-read-c00061-request", {"service": "dpv1-read", "code": "C00061"}),
+        (
+            "e94aycpm",
+            "dpv1-write-c00105-request",
+            {"service": "dpv1-write", "code": "C00105", "type": "UNSIGNED32", "scaling": "1000", "value": "0.05"},
+        ),
+        ("e94aycen", "read-c00061-request", {"service": "gci-read", "code": "C00061"}),
+        (
+            "e94aycen",
+            "write-c00105-request",
+            {
+                "service": "gci-write",
+                "code": "C00105",
+                "type": "UNSIGNED32",
+                "scaling": "1000",
+                "value": "0.05",
+                "gti": "42",
+            },
+        ),
+    ],
+)
+def test_the_builder_makes_the_printed_requests(
+    visitor: Visitor, model: Model, device: str, example: str, controls: dict[str, str]
+) -> None:
+    page = visitor.open(f"{device}-telegrams.html")
+    printed = example_of(model, device, example)
+    if printed.node is not None:
+        fill(page, node=str(printed.node))
+    fill(page, **controls)
+    assert built(page) == spaced(bytes(octet or 0 for octet in printed.data))
+    if printed.identifier is not None:
+        assert page.locator("#builder .identifier").inner_text() == f"0x{printed.identifier:03X}"
+    labelled = " ".join(page.locator("#builder .bytes code").all_inner_texts())
+    assert labelled == built(page)
+    again = visitor.open(page.url.rpartition("/")[2])
+    assert built(again) == labelled
+
+
+def test_the_builder_checks_what_is_typed(visitor: Visitor) -> None:
+    page = visitor.open("e94aycca-telegrams.html")
+    wrong = page.locator("#builder .wrong")
+    fill(page, service="sdo-write", code="C13351", value="99")
+    assert wrong.inner_text() == "The value is not in the selection list."
+    page.locator("#b-option").select_option(label="3: 50 kbps")
+    assert built(page) == "2F D8 2B 00 03 00 00 00"
+    assert wrong.count() == 0
+    fill(page, value="256")
+    assert "does not fit UNSIGNED8" in wrong.inner_text() and page.locator("#builder .bytes").count() == 0
+    fill(page, code="C13350", value="200")
+    assert "above the upper limit 127" in wrong.inner_text()
+    fill(page, code="C13372/99")
+    assert "has no subcode 99" in wrong.inner_text()
+    fill(page, code="I-1000", value="1")
+    assert "cannot be written" in wrong.inner_text()
+    fill(page, code="what")
+    assert "Name a code" in wrong.inner_text()
+    fill(page, code="I-1010/1", value="save")
+    assert built(page).endswith("73 61 76 65") and wrong.count() == 0
+    page = visitor.open("e94aycpm-telegrams.html")
+    fill(page, service="drivecom-read", code="C13865")
+    assert "OCTET_STRING are not carried" in page.locator("#builder .wrong").inner_text()
+    fill(page, service="dpv1-read")
+    assert built(page) == "00 01 00 01 10 00 29 D6 00 00"
+    page.locator("#b-request_reference").press_sequentially("17")  # before the 0 that stands there
+    assert built(page).startswith("AA 01")
+
+
+def test_the_builder_shows_at_once_what_its_page_says(browser: Browser, site: Path, model: Model) -> None:
+    context = browser.new_context(java_script_enabled=False)
+    still = context.new_page()
+    for device in model.devices:
+        still.goto(f"{site.as_uri()}/{device.id}-telegrams.html")
+        before = still.locator("#builder").inner_html()
+        live = browser.new_page()
+        live.goto(f"{site.as_uri()}/{device.id}-telegrams.html")
+        for part in (".controls .known >> nth=0", ".free", ".result"):
+            shown = live.locator(f"#builder {part}").text_content() or ""
+            assert "".join(shown.split()) == "".join((still.locator(f"#builder {part}").text_content() or "").split())
+        assert "Read" in before
+        live.close()
+    context.close()
+
+
+def test_an_entry_leads_to_the_builder(visitor: Visitor, site: Path) -> None:
+    shown = requests(site, "e94aycca-c13351.html", "Write by SDO")[0]
+    page = visitor.open("e94aycca-c13351.html")
+    page.locator(".other a").last.click()
+    assert page.url.endswith("#builder")
+    assert built(page) == shown
+
+
+def test_the_builder_by_keys_alone(visitor: Visitor) -> None:
+    page = visitor.open("e94aycca-telegrams.html")
+    for _ in range(60):
+        page.keyboard.press("Tab")
+        if page.evaluate("document.activeElement.id") == "b-service":
+            break
+    page.keyboard.type("Write")
+    page.keyboard.press("Tab")
+    page.keyboard.type("C13350")
+    page.keyboard.press("Tab")
+    assert page.evaluate("document.activeElement.id") == "b-sub"
+    page.keyboard.press("Tab")
+    page.keyboard.type("9")
+    page.keyboard.press("Tab")
+    assert page.evaluate("document.activeElement.id") == "b-value"
+    page.keyboard.type("12")
+    assert built(page) == "2F D9 2B 00 0C 00 00 00"
+    assert page.locator("#builder .identifier").inner_text() == "0x609"
+    page.keyboard.press("Tab")
+    assert page.evaluate("document.activeElement.dataset.copy") == built(page)
+    page.keyboard.press("Enter")
+    assert page.evaluate("navigator.clipboard.readText()") == built(page)
+
+
+@pytest.mark.parametrize("name", ["e94aycca", "e94aycen", "e94aycpm", "servo931"])
+def test_the_decoder_knows_the_worked_telegrams(visitor: Visitor, model: Model, name: str) -> None:
+    device = the_device(model, name)
+    page = visitor.open(f"{name}-telegrams.html")
+    told = {m.layout for s in device.services for m in s.messages if isinstance(m.layout, str)}
+    for example in device.examples:
+        text = spaced(bytes(octet or 0 for octet in example.data)) if None not in example.data else None
+        shown = text or " ".join("XX" if octet is None else f"{octet:02X}" for octet in example.data)
+        page.locator("#d-layout").select_option(example.layout)
+        page.locator("#d-bytes").fill(shown)
+        assert " ".join(page.locator("#decoder .bytes code").all_inner_texts()) == shown
+        page.locator("#d-layout").select_option("")
+        if text and example.layout in told:
+            page.locator("#d-bytes").fill(text.replace(" ", ""))
+            assert page.locator("#decoder dt:text-is('Layout') + dd").inner_text() == example.layout
+
+
+def test_the_decoder_says_what_a_telegram_means(visitor: Visitor) -> None:
+    page = visitor.open("e94aycca-telegrams.html")
+    result = page.locator("#decoder .result")
+
+    def decoded(text: str, identifier: str = "") -> str:
+        page.locator("#d-bytes").fill(text)
+        page.locator("#d-id").fill(identifier)
+        return result.inner_text()
+
+    read = decoded("605#40C25F0000000000")
+    assert "Read by SDO" in read and "Node address\n5" in read and "C00061" in read
+    written = decoded("0x2F 0xD8 0x2B 0x00 0x03 0x00 0x00 0x00", "601")
+    assert "Write by SDO, request" in written.replace("\n", "") and "3: 50 kbps" in written
+    assert result.locator("a", has_text="C13351").get_attribute("href") == "e94aycca-c13351.html"
+    assert "not in the selection list" in decoded("2F D8 2B 00 63 00 00 00")
+    assert "is UNSIGNED_8" in decoded("23 D8 2B 00 03 00 00 00")
+    assert "is not one of SDO rx" in decoded("2F D8 2B 00 03 00 00 00", "702")
+    assert "cannot be written" in decoded("23 00 10 00 00 00 00 00", "601")
+    refused = decoded("581   [8]  80 00 10 00 41 00 04 06")
+    assert "Error response by SDO" in refused and "Object not mapped" in refused
+    assert result.locator("a", has_text="0x6040041").get_attribute("href") == "e94aycca-abort-0x06040041.html"
+    assert "Emergency telegram" in decoded("00 10 01 00 1B 00 7B 00", "85")
+    assert "not bytes in hexadecimal" in decoded("4 0 zz")
+    page.locator("#d-layout").select_option("sdo")
+    assert "needs 2 bytes" in decoded("40 C2")
+    address = page.url.rpartition("/")[2]
+    shown = result.inner_text()
+    visitor.open(address)
+    assert page.locator("#decoder .result").inner_text() == shown
+
+
+def test_the_decoder_reads_strings_and_error_telegrams(visitor: Visitor, model: Model) -> None:
+    page = visitor.open("e94aycen-telegrams.html")
+    page.locator("#d-bytes").fill(
+        spaced(bytes(o or 0 for o in example_of(model, "e94aycen", "read-c00200-response").data))
+    )
+    assert "E94AFHB" in page.locator("#decoder dt:text-is('Value') + dd").inner_text()
+    page = visitor.open("e94aycpm-telegrams.html")
+    page.locator("#d-bytes").fill("B0 01 29 C7 06 05 00 11")
+    assert "Invalid subindex" in page.locator("#decoder dt:text-is('Error') + dd").inner_text()
+    assert "C13880/1" in page.locator("#decoder dt:text-is('Parameter') + dd").inner_text()
+
+
+def test_error_numbers_are_taken_apart(visitor: Visitor, model: Model, site: Path) -> None:
+    for device in model.devices:
+        errors = [error for error in device.errors if error.kind == "device"]
+        if not errors or device.drive is None:
+            continue
+        page = visitor.open(f"{device.id}-errors.html")
+        result = page.locator("#number .result")
+        bits = dict(device.drive.error_fields)["response"]
+        names = {response.value: response.name for response in device.drive.responses}
+        for nth, error in enumerate(errors[::3]):
+            response = nth % len(names)
+            for number in {error.number, error.last}:
+                reported = number | response << bits.low
+                page.locator("#e-number").fill(str(reported) if nth % 2 else f"0x{reported:08X}")
+                shown = result.inner_text()
+                assert f"{response}: {names[response]}" in shown and error.name in shown
+                target = result.locator(".card a").first.get_attribute("href") or ""
+                path, _, fragment = target.partition("#")
+                text = (site / path).read_text(encoding="utf-8")
+                assert f"0x{number:08x}" in text
+                assert not fragment or f'id="{fragment}"' in text
+                codes = error.adjustable_in
+                if len(codes) == error.count:
+                    assert str(codes[number - error.number]) in shown
+
+
+def test_other_error_numbers_are_looked_up(visitor: Visitor, model: Model) -> None:
+    for device in model.devices:
+        page = visitor.open(f"{device.id}-errors.html")
+        for kind in sorted({error.kind for error in device.errors} - {"device"}):
+            error = next(error for error in device.errors if error.kind == kind)
+            page.locator("#e-number").fill(f"{error.number:x}h")
+            assert error.name in page.locator("#number .result").inner_text()
+    page.locator("#e-number").fill("06040041")
+    assert "0x06040041" in page.locator("#number .result").inner_text()
+    page.locator("#e-number").fill("nothing")
+    assert page.locator("#number .wrong").is_visible()
+
+
+def test_codes_and_indexes_convert(visitor: Visitor, model: Model) -> None:
+    for device in model.devices:
+        if device.drive is None or not device.codes:
+            continue
+        page = visitor.open(f"{device.id}-codes.html")
+        jobs = [
+            job
+            for code in device.codes
+            for job in (["code", code.designation], ["index", str(code.index)], ["hex", f"{code.index:04X}h"])
+        ]
+        script = "jobs => jobs.map(([name, text]) => document.getElementById('wire-data').convert(name, text).texts)"
+        found = page.evaluate(script, jobs)
+        expected = [
+            {"code": code.designation, "index": str(code.index), "hex": f"0x{code.index:04X}"} for code in device.codes
+        ]
+        assert found[0::3] == found[1::3] == found[2::3] == expected
+
+
+def test_the_converter_shows_the_other_slot(visitor: Visitor) -> None:
+    page = visitor.open("e94aycca-codes.html")
+    page.locator("#c-code").fill("13372/2")
+    assert (page.locator("#c-index").input_value(), page.locator("#c-hex").input_value()) == ("11203/2", "0x2BC3/2")
+    shown = page.locator("#converter .result")
+    assert "C14372/2" in shown.inner_text() and "MXI1" in shown.inner_text()
+    page.locator("#c-hex").fill("0x2BD9")
+    assert page.locator("#c-code").input_value() == "C13350"
+    assert shown.locator("a").first.get_attribute("href") == "e94aycca-c13350.html"
+    again = visitor.open(page.url.rpartition("/")[2])
+    assert again.locator("#c-index").input_value() == "11225"
+    page.locator("#c-index").fill("30000")
+    assert page.locator("#converter .wrong").is_visible()
+
+
+def test_without_scripts_there_are_no_controls(browser: Browser, site: Path) -> None:
+    context = browser.new_context(java_script_enabled=False)
+    page = context.new_page()
+    for part in ("telegrams", "errors", "codes"):
+        page.goto(f"{site.as_uri()}/e94aycca-{part}.html")
+        assert page.locator(".instrument").count() and not page.locator(".instrument").first.is_visible()
+    page.goto(f"{site.as_uri()}/e94aycca-c13350.html")
+    assert page.locator(".wire .bytes").first.is_visible()
+    context.close()

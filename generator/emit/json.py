@@ -392,7 +392,7 @@ def _sizes(field: Field) -> Json | None:
 
 
 def _protocol(service: Service, protocols: Mapping[str, str]) -> str:
-    layouts = [message.layout for message in service.messages]
+    layouts = [telegram.layout for telegram in service.messages]
     names = [layout if isinstance(layout, str) else str(layout.cases[0][1]) for layout in layouts]
     return next((protocols[name] for name in names), "")
 
@@ -403,8 +403,8 @@ def _service(service: Service) -> Json:
         "name": service.name,
         "does": service.does.value,
         "reaches": list(service.reaches),
-        "request": _message(service.request) if service.request else None,
-        "answer": _message(service.answer) if service.answer else None,
+        "request": message(service.request) if service.request else None,
+        "answer": message(service.answer) if service.answer else None,
         "errors": service.errors,
         "limit": service.limit,
         "description": service.description,
@@ -414,11 +414,12 @@ def _service(service: Service) -> Json:
     }
 
 
-def _message(message: Message) -> Json:
+def message(telegram: Message) -> Json:
+    """A telegram of a service, its fillings in the notation of spec."""
     return {
-        "identifier": message.identifier,
-        "layout": _filling(message.layout),
-        "values": _fillings(message.values),
+        "identifier": telegram.identifier,
+        "layout": _filling(telegram.layout),
+        "values": _fillings(telegram.values),
     }
 
 

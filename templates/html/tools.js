@@ -88,4 +88,14 @@
     link.parentElement.append(copier("link", addressOf(link.hash), ""));
   }
   for (const name of document.querySelectorAll(".names code")) name.after(copier("name", name.textContent, ""));
+  for (const bytes of document.querySelectorAll(".wire .bytes")) {
+    const text = [...bytes.querySelectorAll("code")].map((code) => code.textContent).join(" ");
+    bytes.previousElementSibling.append(copier("bytes", text, ""));
+  }
+
+  // Buttons that other scripts make say themselves what they copy.
+  document.addEventListener("click", ({ target }) => {
+    const button = target.closest("[data-copy]");
+    if (button) copy(button.dataset.copy, button);
+  });
 }

@@ -27,6 +27,8 @@ from generator.emit.html.filters import Filter, filter_of
 from generator.emit.html.finder import Finder, finder
 from generator.emit.html.frame import Frame, NavItem, coverage_item, device_frame, site_frame
 from generator.emit.html.home import home, not_found
+from generator.emit.html.instruments import SCRIPT as WIRE
+from generator.emit.html.instruments import Instruments, instruments
 from generator.emit.html.ledger import ledger_groups
 from generator.emit.html.links import Links
 from generator.emit.html.objects import object_entry, object_group
@@ -71,7 +73,7 @@ _LEADS = {
 }
 _FILTERED = {"codes": ("Data type", "Access"), "objects": ("Type",), "errors": ("Response",)}
 """Parts whose entries have a page of their own each, with the columns by which their overviews are filtered."""
-_SCRIPTS = {"leds": ("panel.js",), "switches": ("panel.js",)}
+_SCRIPTS = {"leds": ("panel.js",), "switches": ("panel.js",), "telegrams": (WIRE,), "errors": (WIRE,), "codes": (WIRE,)}
 """Scripts of the instruments of a part."""
 
 
@@ -88,7 +90,7 @@ class Page:
 class PartView:
     """Groups of entries; ``lead`` is "" where the title says enough.
 
-    ``blinks``: it has drawings that move.  ``boards`` and ``finder``: instruments that stand above the groups.
+    ``blinks``: it has drawings that move.  ``boards``, ``finder`` and ``instruments`` stand above the groups.
     """
 
     lead: str
@@ -97,6 +99,7 @@ class PartView:
     filter: Filter | None
     boards: tuple[Board, ...] = ()
     finder: Finder | None = None
+    instruments: Instruments | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -238,7 +241,7 @@ def _device_pages(model: Model, links: Links, relations: Relations, offered: Off
             description=f"{title} of the {device.title}: {names}.",
             scripts=(*_SCRIPTS.get(part, ()), *((FILTER,) if found else ())),
         )
-        yield Page(frame, "part", _part_view(links.on(frame.path), part, groups, found))
+        yield Page(frame, "part", _part_view(model, links.on(frame.path), part, groups, found))
         if part in _FILTERED:
             yield from _entry_pages(model, links, relations, nav, part)
     if device.drive:
@@ -260,7 +263,7 @@ def _device_pages(model: Model, links: Links, relations: Relations, offered: Off
         yield Page(frame, "sheet", sheet(links.on(frame.path)))
 
 
-def _part_view(links: Links, part: str, groups: tuple[Group, ...], filtered: Filter | None) -> PartView:
+def _part_view(model: Model, links: Links, part: str, groups: tuple[Group, ...], filtered: Filter | None) -> PartView:
     device = links.device
     return PartView(
         _LEADS.get(part, ""),
@@ -269,6 +272,7 @@ def _part_view(links: Links, part: str, groups: tuple[Group, ...], filtered: Fil
         filter=filtered,
         boards=boards(links, device.switches) if part == "switches" else (),
         finder=finder(device.indicators) if part == "leds" else None,
+        instruments=instruments(model, links, part),
     )
 
 

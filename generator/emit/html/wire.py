@@ -34,6 +34,9 @@ from generator.model import (
 from generator.model.telegram import OPEN
 from generator.wire import Call, Telegram, build, carries, case_of, chosen
 
+BUILDER = "builder"
+"""Anchor of the instrument that builds telegrams."""
+
 _BYTE = 8
 _ONE_DIGIT = 9
 _IDENTIFIER_BITS = 12
@@ -248,16 +251,7 @@ def code_bus(links: Links, bus: Bus, entry: Sequence[Code]) -> BusSection | None
     code = entry[0]
     sub = code.subcodes[0] if code.subcodes else None
     subcode = sub.number if sub else 0
-    targets = tuple(
-        Target(
-            label=_in_slot(one, sub is not None),
-            key=str(CodeRef(one.number, subcode if sub else None)),
-            call=Call(
-                data_type=one.data_type, type_name=one.type_name, index=one.index, code=one.number, subindex=subcode
-            ),
-        )
-        for one in entry
-    )
+    targets = tuple(code_target(one, subcode) for one in entry)
     options = (sub.options if sub else ()) or code.options
     default = sub.default if sub else code.default
     value = _value(default, code.range, options, code.data_type, Fraction(code.scaling or 1), bus.node)
@@ -265,21 +259,32 @@ def code_bus(links: Links, bus: Bus, entry: Sequence[Code]) -> BusSection | None
     return _section(links, bus, Subject("codes", targets, code.access.read, code.access.write, value, part))
 
 
-def _in_slot(code: Code, with_subcode: bool) -> str:
-    name = str(CodeRef(code.number, code.subcodes[0].number if with_subcode else None))
-    return f"{name} ({code.slot})" if code.slot else name
+def code_target(code: Code, subcode: int) -> Target:
+    """A code as a service sees it, in one of its subcodes or, with 0, as a single variable."""
+    name = str(CodeRef(code.number, subcode or None))
+    return Target(
+        label=f"{name} ({code.slot})" if code.slot else name,
+        key=name,
+        call=Call(
+            data_type=code.data_type, type_name=code.type_name, index=code.index, code=code.number, subindex=subcode
+        ),
+    )
+
+
+def object_target(entry: DictionaryObject, sub: SubIndex) -> Target:
+    """A sub-index of an object as a service sees it."""
+    return Target(
+        label=entry.designation + (f"/{sub.number}" if len(entry.subindexes) > 1 else ""),
+        key=f"{entry.designation}/{sub.number}".replace(" ", "-"),
+        call=Call(data_type=sub.data_type, index=entry.index, subindex=sub.number),
+    )
 
 
 def object_bus(links: Links, bus: Bus, entry: DictionaryObject) -> BusSection | None:
     """Telegrams that read and write an object, in the first sub-index behind 0 where it has any."""
     known = [sub for sub in entry.subindexes if sub.abort is None and not sub.unused] or list(entry.subindexes)
     sub = next((sub for sub in known if sub.number > 0), known[0])
-    name = entry.designation + (f"/{sub.number}" if len(entry.subindexes) > 1 else "")
-    target = Target(
-        label=name,
-        key=f"{entry.designation}/{sub.number}".replace(" ", "-"),
-        call=Call(data_type=sub.data_type, index=entry.index, subindex=sub.number),
-    )
+    target = object_target(entry, sub)
     part = f"sub-index {sub.number}" if len(entry.subindexes) > 1 else ""
     value = _object_value(sub, bus.node)
     return _section(links, bus, Subject("objects", (target,), sub.access != "wo", sub.access in _WRITABLE, value, part))
@@ -404,7 +409,7 @@ def _builder(device: Device, service: Service, target: Target, value: Value | No
     query = f"service={service.id}&code={target.key}"
     if service.does is Does.WRITE and value is not None and isinstance(value.raw, int):
         query += f"&raw={value.raw}"
-    return f"{page_of(device, 'telegrams')}?{query}"
+    return f"{page_of(device, 'telegrams')}?{query}#{BUILDER}"
 
 
 def _lead(links: Links, bus: Bus, subject: Subject) -> Prose:
