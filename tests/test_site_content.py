@@ -421,7 +421,7 @@ def visible(rows: Locator) -> list[str]:
 
 def test_errata_are_filtered_by_column_and_text(visitor: Visitor, model: Model) -> None:
     page = visitor.open("errata.html")
-    rows, status = page.locator("table.ledger > tbody > tr"), page.locator("main").get_by_role("status")
+    rows, status = page.locator("table.ledger > tbody > tr"), page.locator(".filter").get_by_role("status")
     whole = sum(len(device.errata) for device in model.devices)
     assert status.inner_text() == f"{whole} of {whole}"
     device = max(model.devices, key=lambda device: len(device.errata))
@@ -457,7 +457,7 @@ def test_lists_are_filtered_over_all_their_tables(visitor: Visitor, model: Model
     assert found.count() == 1 and found.locator("th").inner_text().lower().startswith(f"0x{error.number:04x}"[:6])
     assert page.locator("main tbody tr.more:visible").count() == 1
     page.get_by_label("Filter", exact=True).fill("no such words anywhere")
-    assert page.locator("main").get_by_role("status").inner_text().startswith("0 of ")
+    assert page.locator(".filter").get_by_role("status").inner_text().startswith("0 of ")
     assert kinds.first.is_visible()
 
 
@@ -465,7 +465,7 @@ def test_a_choice_of_an_address_that_no_list_has_is_no_choice(visitor: Visitor, 
     page = visitor.open("errata.html?device=nobody&confidence=high")
     assert page.get_by_label("Device", exact=True).input_value() == ""
     high = sum(erratum.confidence == "high" for device in model.devices for erratum in device.errata)
-    assert page.locator("main").get_by_role("status").inner_text().startswith(f"{high} of ")
+    assert page.locator(".filter").get_by_role("status").inner_text().startswith(f"{high} of ")
 
 
 def test_without_scripts_there_is_no_filter_but_every_row(browser: Browser, site: Path, model: Model) -> None:
