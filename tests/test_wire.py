@@ -93,6 +93,12 @@ def test_length_comes_from_the_data_type(model: Model) -> None:
     assert request(model, "e94aycca", "sdo-write", low) == "2F D8 2B 00 FE 00 00 00"
 
 
+def test_the_spelling_of_the_manual_decides_first(model: Model) -> None:
+    for name, number in (("", "05"), ("UNSIGNED_8", "05"), ("BITFIELD_8", "0C")):
+        call = Call(data_type=DataType.UNSIGNED8, type_name=name, index=0, code=1, subindex=0, value=1)
+        assert request(model, "e94aycen", "gci-write", call).split()[10] == number
+
+
 def test_a_subcode_is_one_element_of_an_array(model: Model) -> None:
     call = Call(data_type=DataType.UNSIGNED8, index=0x2BD8, subindex=3)
     assert request(model, "e94aycpm", "dpv1-read", call) == "00 01 00 01 10 01 2B D8 00 03"

@@ -337,7 +337,7 @@
     if (!section) return null;
     const form = section.querySelector(".controls");
     const result = section.querySelector("[data-shows=result]");
-    result.setAttribute("role", "status");
+    result.setAttribute("aria-live", "polite");
     const fields = Object.fromEntries([...form.querySelectorAll("[name]")].map((control) => [control.name, control]));
     // What the page shows before anything is typed.
     const idle = [...result.children];
@@ -360,7 +360,7 @@
 
   // What a person names: a code, an object, or an index alone; null where the text is neither.
   function named(text) {
-    const [whole, sub = ""] = text.trim().split(/\s/)[0].split("/");
+    const [whole, sub = ""] = text.trim().replace(/^(?:pnu\s+|p-)/i, "PNU-").split(/\s/)[0].split("/");
     const part = sub ? typed(sub) : null;
     const known = data.parameters.find((it) => it.key.toLowerCase() === whole.toLowerCase());
     if (known) return { ...address(known), known, part };
