@@ -7,7 +7,7 @@ from pathlib import Path
 from generator.check import check
 from generator.diagnostics import Diagnostic, DiagnosticsError, Problems
 from generator.elaborate import elaborate
-from generator.emit import html, targets
+from generator.emit import targets
 from generator.emit.base import EmitError
 from generator.emit.pins import broken
 from generator.model import Model
@@ -56,6 +56,8 @@ def render_site(model: Model, url: str = "") -> dict[str, bytes]:
     Raises:
         DiagnosticsError: A target or the reference cannot express a fact.
     """
+    from generator.emit import html  # only the site pays for loading it
+
     files = offer(model.version, render(model))
     offered = {path: html.Stored(len(data), digest(data)) for path, data in files.items()}
     with reported():
