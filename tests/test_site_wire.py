@@ -422,7 +422,7 @@ def test_an_entry_leads_to_the_builder(visitor: Visitor, site: Path) -> None:
     shown = requests(site, "e94aycca-c13351.html", "Write by SDO")[0]
     page = visitor.open("e94aycca-c13351.html")
     page.locator(".other a").last.click()
-    assert page.url.endswith("#builder")
+    page.wait_for_url("**#builder")
     assert built(page) == shown
 
 
