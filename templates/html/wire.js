@@ -590,7 +590,7 @@
       let call = {};
       try {
         const sub = typed(fields.sub.value);
-        if (!place || place.index === null) fail("Name a code such as C00105, an object such as I-1018/1, or an index such as 0x5F96.");
+        if (!place || place.index === null) fail("Name a code, an object or an index; the field lists those that are known.");
         if (sub === null || sub < 0n) fail("The subcode is a number, 0 where there is none.");
         const chosenFree = {};
         for (const input of free.querySelectorAll("input")) chosenFree[input.name] = typed(input.value) ?? fail(`'${input.value}' is not a number.`);

@@ -5,18 +5,10 @@ from collections.abc import Iterator, Sequence
 from generator.emit.html.blocks import Anchor, Bullets, Entry, Fact, Group, Item, ItemList, Row, Table
 from generator.emit.html.links import Links
 from generator.emit.html.notes import error_subject, notes
-from generator.emit.html.places import error_id, error_text
+from generator.emit.html.places import ERROR_KINDS, error_id, error_text
 from generator.emit.html.text import ELLIPSIS, NONE, Piece, Prose, joined, shown_origin, through
 from generator.model import Drive, ErrorEntry
 
-_KINDS = {
-    "device": "Device errors",
-    "emergency": "Emergency codes",
-    "sdo_abort": "SDO abort codes",
-    "dpv0": "PROFIBUS DP-V0 diagnosis",
-    "dpv1": "PROFIBUS DP-V1 errors",
-    "gci": "GCI errors",
-}
 _VARIANTS = ("Slot", "Number", "Decimal", "Response set in", "Source")
 _Variants = Sequence[ErrorEntry]
 """The error of one entry in every slot that it stands for."""
@@ -33,7 +25,7 @@ def error_group(links: Links, name: str, kind: str, errors: Sequence[ErrorEntry]
 
 def kind_title(kind: str) -> str:
     """Heading of the errors of a kind."""
-    return _KINDS.get(kind, kind)
+    return ERROR_KINDS[kind][1] if kind in ERROR_KINDS else kind
 
 
 def _overview(links: Links, errors: Sequence[ErrorEntry]) -> Table:

@@ -76,7 +76,7 @@ class Instruments:
 
     ``services`` and ``layouts`` can be chosen, as can the ``types`` of values.  ``first``: what the builder shows to
     begin with, ``None`` where nothing can be read.  ``example``: a number to begin with.  ``nodes``: whether the bus
-    has node addresses.  ``rule``: how an index is made; ``slots``: the codes of each slot.  ``data`` is JSON that can
+    has node addresses.  ``log``: a worked telegram as a line of a bus log, "" where none has an identifier.  ``rule``: how an index is made; ``slots``: the codes of each slot.  ``data`` is JSON that can
     stand inside an element.
     """
 
@@ -88,6 +88,7 @@ class Instruments:
     first: First | None = None
     example: str = ""
     nodes: bool = False
+    log: str = ""
     rule: str = ""
     slots: tuple[Fact, ...] = ()
 
@@ -144,7 +145,16 @@ def _telegrams(model: Model, links: Links) -> Instruments:
         types=tuple(Choice(kind.canopen_name, kind.canopen_name) for kind in DataType if kind is not DataType.DOMAIN),
         first=_first(bus, asked[0]) if asked else None,
         nodes=bool(names),
+        log=next(_log_lines(device), ""),
     )
+
+
+def _log_lines(device: Device) -> Iterator[str]:
+    """Worked telegrams with identifier whose bytes are all known, as "identifier#bytes" in hexadecimal."""
+    for example in device.examples:
+        if example.identifier is not None and None not in example.data:
+            octets = "".join(f"{octet:02X}" for octet in example.data if octet is not None)
+            yield f"{example.identifier:X}#{octets}"
 
 
 def _first(bus: Bus, service: Service) -> First | None:

@@ -8,6 +8,15 @@ from generator.model import Code, Device, DictionaryObject, ErrorEntry, SwitchGr
 
 T = TypeVar("T")
 
+ERROR_KINDS = {
+    "device": ("Device error", "Device errors"),
+    "emergency": ("Emergency code", "Emergency codes"),
+    "sdo_abort": ("SDO abort code", "SDO abort codes"),
+    "dpv0": ("DP-V0 diagnosis", "PROFIBUS DP-V0 diagnosis"),
+    "dpv1": ("DP-V1 error", "PROFIBUS DP-V1 errors"),
+    "gci": ("GCI error", "GCI errors"),
+}
+"""Kinds of errors, singular and plural."""
 _ERROR_PREFIXES = {"device": "e", "emergency": "emcy", "sdo_abort": "abort"}
 _ERROR_DIGITS = {"emergency": 4, "dpv1": 4, "gci": 4}
 _LONG_DIGITS = 8

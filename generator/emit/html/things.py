@@ -8,6 +8,7 @@ from generator.emit.html.errors import has_own_places, shared_name
 from generator.emit.html.lamps import words
 from generator.emit.html.links import Links
 from generator.emit.html.places import (
+    ERROR_KINDS,
     code_entries,
     code_id,
     erratum_id,
@@ -40,12 +41,7 @@ KINDS = {
     "code": ("Code", "Codes"),
     "canopen": ("Object", "Objects"),
     "profidrive": ("PROFIdrive parameter", "PROFIdrive parameters"),
-    "device-error": ("Device error", "Device errors"),
-    "emergency": ("Emergency code", "Emergency codes"),
-    "sdo_abort": ("SDO abort code", "SDO abort codes"),
-    "dpv0": ("DP-V0 diagnosis", "PROFIBUS DP-V0 diagnosis"),
-    "dpv1": ("DP-V1 error", "PROFIBUS DP-V1 errors"),
-    "gci": ("GCI error", "GCI errors"),
+    **{f"{kind}-error" if kind == "device" else kind: titles for kind, titles in ERROR_KINDS.items()},
     "cob_id": ("COB-ID", "COB-IDs"),
     "led": ("LED", "LEDs"),
     "switch": ("DIP switches", "DIP switches"),
