@@ -76,8 +76,9 @@ class Instruments:
 
     ``services`` and ``layouts`` can be chosen, as can the ``types`` of values.  ``first``: what the builder shows to
     begin with, ``None`` where nothing can be read.  ``example``: a number to begin with.  ``nodes``: whether the bus
-    has node addresses.  ``log``: a worked telegram as a line of a bus log, "" where none has an identifier.  ``rule``: how an index is made; ``slots``: the codes of each slot.  ``data`` is JSON that can
-    stand inside an element.
+    has node addresses.  ``log``: a worked telegram as a line of a bus log, "" where none has an identifier.
+    ``rule``: how an index is made; ``slots``: the codes of each slot.  ``data`` is JSON that can stand inside an
+    element.
     """
 
     kind: str
