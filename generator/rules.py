@@ -48,6 +48,7 @@ RULES: dict[str, str] = {
     "slot-twin": "Where a code is named for each slot, the names are those of the same code.",
     "mirror": "Codes and objects agree on which mirrors which.",
     "error-number": "Every printed form of an error number is that number.",
+    "error-fields": "Listed error numbers leave those fields clear that the drive fills when it reports an error.",
     "error-name": "The places that print an error's designation agree.",
     "error-response": "The preset response can be selected, and is the default of the code that sets it.",
     "error-adjustable": "The places that name the code for an error's response agree.",

@@ -24,6 +24,7 @@ RULES: tuple[Callable[[Model, Device], Iterator[Finding]], ...] = (
     objects.code_references,
     objects.mirrors,
     errors.numbers,
+    errors.fields,
     errors.names,
     errors.responses,
     errors.adjustable_codes,

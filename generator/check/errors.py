@@ -51,6 +51,26 @@ def _show(value: int | None, base: int) -> str:
     return f"0x{value:08x}" if base == 16 else str(value)
 
 
+def fields(model: Model, device: Device) -> Iterator[Finding]:
+    """Rule error-fields: listed numbers leave those fields clear that the drive fills when it reports an error."""
+    drive = device.drive
+    if drive is None:
+        return
+    reported = ~drive.error_mask
+    for error in (error for error in device.errors if error.kind == "device"):
+        if (error.number | error.last) & reported:
+            yield Finding(
+                rule="error-fields",
+                subject=error.ref,
+                place="number",
+                printed=_show(error.number, 16),
+                expected=_show(error.number & drive.error_mask, 16),
+                message=f"{error.ref} fills one of the fields {', '.join(drive.reported_fields)}",
+                where=error.where,
+                hint="the drive fills them when it reports the error: leave them zero",
+            )
+
+
 def names(model: Model, device: Device) -> Iterator[Finding]:
     """Rule error-name: designations of the overview and of the detailed description."""
     for error in device.errors:

@@ -45,6 +45,11 @@ def drive(file: SourceFile, manuals: Mapping[str, Manual]) -> Drive:
     assert base is not None and number is not None
     layout = number.child("fields")
     assert layout is not None
+    reported = number.texts("reported")
+    for name in reported:
+        if name not in layout.data:
+            hint = suggestion(name, list(layout.data), "fields")
+            number.problems.add("name-unknown", number.at("reported"), f"there is no field '{name}'", hint=hint)
     result = Drive(
         id=file.stem,
         title=str(root.get("title")),
@@ -65,6 +70,7 @@ def drive(file: SourceFile, manuals: Mapping[str, Manual]) -> Drive:
             (name, BitField(int(low), int(high), name))
             for name, (low, high) in ((name, str(run).split("...")) for name, run in layout.data.items())
         ),
+        reported_fields=reported,
         error_fields_origin=origin(number),
         error_fields_cite=number.cite(),
         modules=tuple(

@@ -64,7 +64,11 @@ class DriveCommand:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Drive:
-    """A base drive: ``index_base`` - code number = index of a code."""
+    """A base drive: ``index_base`` - code number = index of a code.
+
+    ``error_fields``: bits of an error number by name; ``reported_fields``: those that the drive fills when it reports
+    the error, so that they do not tell which error it is.
+    """
 
     id: str
     title: str
@@ -73,11 +77,17 @@ class Drive:
     index_base_cites: tuple[Cite, ...]
     responses: tuple[Response, ...]
     error_fields: tuple[tuple[str, BitField], ...]
+    reported_fields: tuple[str, ...]
     error_fields_origin: Origin
     error_fields_cite: Cite
     modules: tuple[DriveModule, ...]
     commands: tuple[DriveCommand, ...]
     where: Where
+
+    @property
+    def error_mask(self) -> int:
+        """Bits of an error number that tell which error it is."""
+        return sum(field.mask for name, field in self.error_fields if name not in self.reported_fields)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -128,6 +138,12 @@ class Device:
     examples: tuple[Example, ...]
     errata: tuple[Erratum, ...]
     where: Where
+
+    @property
+    def error_mask(self) -> int:
+        """Bits by which a reported error number finds its entry among those of kind "device", 0 where there is none."""
+        listed = any(error.kind == "device" for error in self.errors)
+        return self.drive.error_mask if self.drive and listed else 0
 
     def codes_of_slot(self, slot: str | None) -> tuple[Code, ...]:
         """Codes that a master sees with the module in ``slot``: those of the base drive and of the slot."""

@@ -3,7 +3,7 @@
 """Rows of the records of e94aycen, in the order that _catalogue.py reads them."""
 
 INDEX_BASE = 24575
-IGNORED_MASK = 0xFC000000
+IGNORED_MASK = 0x00000000
 
 DEVICE = (
     "E94AYCEN Ethernet communication module", "Lenze", "E94AYCEN", "Ethernet", "VC", None,

@@ -82,25 +82,14 @@ def error_widths(device: Device) -> dict[str, int]:
     return widths
 
 
-def error_mask(device: Device) -> int:
-    """Fields of the drive's error number that the numbers in the list use; the others change at run time."""
-    if device.drive is None:
-        return 0
-    used = 0
-    for error in device.errors:
-        if error.kind == "device":
-            used |= error.number | error.last
-    return sum(field.mask for _, field in device.drive.error_fields if field.mask & used)
-
-
 def _device(device: Device, prefix: str, names: Names) -> Section:
     writer = Writer(names, prefix, device.title, device.where)
     writer.number("CODE_COUNT", len(device.codes), "codes, those of all slots")
     writer.number("OBJECT_COUNT", len(device.objects), "objects")
     writer.number("ERROR_COUNT", len(device.errors), "error numbers and runs of them")
-    mask = error_mask(device)
-    if mask:
-        writer.number("ERROR_MASK", mask, "part of an error number that finds it in the list", 32, hexadecimal=True)
+    if device.error_mask:
+        part = "part of an error number that finds it in the list"
+        writer.number("ERROR_MASK", device.error_mask, part, 32, hexadecimal=True)
     for slot in device.slots:
         writer.number(f"{slot.name}_CODE_FIRST", slot.first_code, f"first code of slot {slot.name}")
         writer.number(f"{slot.name}_CODE_LAST", slot.last_code, f"last code of slot {slot.name}")

@@ -4,7 +4,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from generator.codec import decode
-from generator.emit.c.device import device_prefix, error_mask
+from generator.emit.c.device import device_prefix
 from generator.emit.c.prose import provenance
 from generator.emit.c.syntax import ascii_text, integer
 from generator.emit.c.telegrams import filled, number_width
@@ -57,7 +57,7 @@ def _example(device: Device) -> Iterator[str]:
     """Program that decodes a worked telegram and names a code and an error; nothing where the device has too little."""
     found = _telegram(device)
     errors = [error for error in device.errors if error.kind == "device"]
-    if found is None or not device.codes or device.drive is None or not errors or not error_mask(device):
+    if found is None or not device.codes or device.drive is None or not errors or not device.error_mask:
         return
     example, layout, members = found
     octets = ", ".join(f"0x{octet:02X}" for octet in filled(layout, example.data))

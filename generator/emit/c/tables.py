@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from itertools import groupby
 
 from generator.emit.c.common import ERROR_KINDS, NO_RESPONSE, drive_prefix
-from generator.emit.c.device import DefaultRun, access_flags, code_defaults, device_prefix, error_mask
+from generator.emit.c.device import DefaultRun, access_flags, code_defaults, device_prefix
 from generator.emit.c.prose import provenance
 from generator.emit.c.syntax import comment, integer, string, text_size
 from generator.emit.c.writer import Names, access, wire_limits
@@ -132,7 +132,7 @@ def device_tables(model: Model, device: Device, names: Names) -> Tables:
         notes=provenance(model, [device.manual], [device.manufacturer]),
         stem=stem,
         prefix=prefix,
-        masked=bool(error_mask(device)),
+        masked=bool(device.error_mask),
         code_texts=code_texts,
         codes=tuple(_code(code, code_texts) for code in device.codes),
         defaults=tuple(

@@ -7,7 +7,6 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any
 
-from generator.emit.c.device import error_mask
 from generator.emit.html.blocks import Fact
 from generator.emit.html.errors import kind_title
 from generator.emit.html.links import Links
@@ -403,7 +402,7 @@ def _error_data(links: Links) -> _Json:
     }
     if device.drive and "device" in kinds:
         data |= {
-            "mask": error_mask(device),
+            "mask": device.error_mask,
             "fields": [(name, field.low, field.high) for name, field in device.drive.error_fields],
             "values": {
                 "response": {response.value: response.name for response in device.drive.responses},

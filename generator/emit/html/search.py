@@ -4,7 +4,6 @@ import json
 from collections.abc import Iterable, Iterator
 from typing import Any
 
-from generator.emit.c.device import error_mask
 from generator.emit.html.frame import Frame
 from generator.emit.html.links import Links
 from generator.emit.html.places import page_of
@@ -93,14 +92,12 @@ def _pages(model: Model, frames: Iterable[Frame]) -> Iterator[list[Any]]:
 
 def _reported(device: Device) -> list[Any]:
     """Mask of the error numbers in the list, and the fields that change at run time: label, bits, names of values."""
-    mask = error_mask(device)
-    fields = device.drive.error_fields if device.drive and mask else ()
-    names = {response.value: response.name for response in device.drive.responses} if device.drive else {}
+    drive = device.drive
+    if drive is None or not device.error_mask:
+        return [0, []]
+    fields = dict(drive.error_fields)
+    names = {"response": {response.value: response.name for response in drive.responses}}
     return [
-        mask,
-        [
-            [field.label, field.low, field.high, names if name == "response" else {}]
-            for name, field in fields
-            if not field.mask & mask
-        ],
+        device.error_mask,
+        [[name, fields[name].low, fields[name].high, names.get(name, {})] for name in drive.reported_fields],
     ]

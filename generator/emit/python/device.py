@@ -12,7 +12,7 @@ from generator.emit.python.rows import code_row, device_row, dict_table, erratum
 from generator.emit.python.telegrams import Telegrams
 from generator.emit.python.text import cite_text, doc, fill, index_text, literal, manual_text
 from generator.emit.python.views import ConstantView, DeviceView, ExampleView, GroupView
-from generator.model import Device, Drive, ErrorEntry, Model
+from generator.model import Device, ErrorEntry, Model
 from generator.naming import Scope, snake
 
 API = ("CODES", "DEVICE", "ERRATA", "ERRORS", "INDICATORS", "OBJECTS", "SWITCHES", "TABLES", "code", "code_by_name",
@@ -74,7 +74,7 @@ class DeviceBuilder:
             ),
             has_index_base=drive is not None,
             index_base=literal(None if drive is None else drive.index_base),
-            ignored_mask=f"0x{_ignored_mask(drive):08X}",
+            ignored_mask=f"0x{0xFFFF_FFFF ^ (device.error_mask or 0xFFFF_FFFF):08X}",
             has_error_fields=drive is not None and bool(drive.error_fields),
             groups=groups,
             enums=self._enums.views,
@@ -145,12 +145,6 @@ class DeviceBuilder:
         for name, error in zip(_error_names(errors), errors, strict=True):
             self._scope.add(name, at(error.where, error.number))
             yield ConstantView(name, f"0x{error.number:08X}", self._docs.error(error))
-
-
-def _ignored_mask(drive: Drive | None) -> int:
-    """Bits of an error number that hold the response and the instance; 0 where the drive has no such fields."""
-    fields = () if drive is None else drive.error_fields
-    return sum(field.mask for name, field in fields if name in ("response", "instance"))
 
 
 def _error_names(errors: Sequence[ErrorEntry]) -> list[str]:

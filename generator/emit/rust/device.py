@@ -34,8 +34,6 @@ from generator.model import Code, Device, DictionaryObject, Erratum, ErrorEntry,
 from generator.naming import Scope
 
 _DEVICE_ERRORS = "device"
-_REPORTED_FIELDS = frozenset({"response", "instance"})
-"""Fields of an error number that the drive fills when it reports the error; lists of errors hold zero there."""
 
 
 class DeviceFiles:
@@ -103,8 +101,7 @@ class DeviceFiles:
 
     def error_mask(self, kind: str) -> int:
         """Bits of an error number of that kind that tell which error it is."""
-        fields = self.device.drive.error_fields if self.device.drive and kind == _DEVICE_ERRORS else ()
-        return 0xFFFF_FFFF & ~sum(field.mask for name, field in fields if name in _REPORTED_FIELDS)
+        return (self.device.error_mask if kind == _DEVICE_ERRORS else 0) or 0xFFFF_FFFF
 
     def _fill(self, template: str, **view: object) -> str:
         return render(f"rust/{template}.rs.j2", notice=self._notice, title=self.module.title, **view)
