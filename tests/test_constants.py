@@ -19,11 +19,13 @@ from rust_crate import Cargo
 from generator.model import (
     Bit,
     BitField,
+    CanOpenFacts,
     Code,
     CodeRef,
     Default,
     Device,
     DictionaryObject,
+    Drive,
     ErrorEntry,
     Field,
     IndicatorTable,
@@ -33,6 +35,7 @@ from generator.model import (
     ObjectRef,
     Option,
     Range,
+    Slot,
     SubCode,
     SubIndex,
     SwitchGroup,
@@ -43,16 +46,68 @@ Json = Mapping[str, Any]
 
 @pytest.fixture(scope="module")
 def published(root: Path, model: Model) -> Model:
-    """The model with every number of codes, objects, errors, LEDs, switches and telegrams read from generated/json."""
-    return replace(model, devices=tuple(read(root, device) for device in model.devices))
+    """The model with the numbers of drives, codes, errors and the rest as generated/json has them."""
+    files = {device.id: document(root, device) for device in model.devices}
+    devices = tuple(read(files[device.id], device) for device in model.devices)
+    drives = {device.drive.id: device.drive for device in devices if device.drive}
+    assert list(drives) == [drive.id for drive in model.drives]
+    canopen = next(files[device.id]["canopen"] for device in devices if device.canopen)
+    cob_ids = tuple(
+        replace(like, name=entry["name"], base=entry["base"], broadcast=entry["broadcast"])
+        for entry, like in zip(canopen["cob_ids"], model.cob_ids, strict=True)
+    )
+    return replace(model, devices=devices, drives=tuple(drives.values()), cob_ids=cob_ids)
 
 
-def read(root: Path, device: Device) -> Device:
-    found = json.loads((root / "generated" / "json" / f"{device.id}.json").read_text(encoding="utf-8"))
+def document(root: Path, device: Device) -> Json:
+    found: Json = json.loads((root / "generated" / "json" / f"{device.id}.json").read_text(encoding="utf-8"))
+    return found
+
+
+def drive_of(entry: Json, like: Drive) -> Drive:
+    fields = entry["error_number"]["fields"]
+    return replace(
+        like,
+        index_base=entry["index_base"]["value"],
+        error_fields=tuple((field["name"], BitField(field["low"], field["high"], field["name"])) for field in fields),
+        reported_fields=tuple(field["name"] for field in fields if field["reported"]),
+        responses=tuple(
+            replace(one, value=response["value"], name=response["name"], aliases=tuple(response["aliases"]))
+            for response, one in zip(entry["responses"], like.responses, strict=True)
+        ),
+        modules=tuple(
+            replace(one, value=module["value"], name=module["name"])
+            for module, one in zip(entry["modules"], like.modules, strict=True)
+        ),
+        commands=tuple(
+            replace(one, value=command["value"], name=command["name"])
+            for command, one in zip(entry["commands"], like.commands, strict=True)
+        ),
+    )
+
+
+def canopen_of(entry: Json, like: CanOpenFacts) -> CanOpenFacts:
+    return replace(
+        like,
+        baud_rates=tuple(entry["bit_rates"]),
+        granularity=entry["pdo_granularity"],
+        node_address=entry["node_address_code"],
+        boot_up_master=entry["boot_up_master"],
+    )
+
+
+def slot_of(entry: Json, like: Slot) -> Slot:
+    return replace(like, **{key: entry[key] for key in entry})
+
+
+def read(found: Json, device: Device) -> Device:
     layouts = [layout for group in found["telegrams"] for layout in group["layouts"]]
     assert [slot.name for slot in device.slots] == found["slots"]
     return replace(
         device,
+        drive=drive_of(found["drive"], device.drive) if device.drive else None,
+        canopen=canopen_of(found["canopen"], device.canopen) if device.canopen else None,
+        slots=each(slot_of, found["slot_rules"], device.slots),
         codes=each(code_of, found["codes"], device.codes),
         objects=each(object_of, found["objects"], device.objects),
         errors=each(error_of, found["errors"], device.errors),
@@ -227,6 +282,8 @@ def test_json_holds_the_model(published: Model, model: Model) -> None:
 
 
 def test_constants_of_c(root: Path, published: Model, tmp_path: Path) -> None:
+    printed = test_c.self_test(root / "generated" / "c", tmp_path, "drivespec")
+    test_c.assert_same(printed, test_c.expected_common(published))
     for device in published.devices:
         printed = test_c.self_test(root / "generated" / "c", tmp_path, device.id)
         test_c.assert_same(printed, test_c.expected_device(device) | test_c.expected_records(device))

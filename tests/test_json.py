@@ -1,6 +1,7 @@
 """generated/json: valid, closed, described, and the same facts as the model."""
 
 import json
+import re
 from pathlib import Path
 from typing import Any
 
@@ -159,3 +160,31 @@ def test_every_chapter_is_accounted_for(model: Model) -> None:
             for chapter in manual.chapters:
                 assert chapter.status in ("transcribed", "not-applicable", "lost"), (manual.id, chapter.number)
                 assert chapter.status == "transcribed" or chapter.note, (manual.id, chapter.number)
+
+
+def test_what_is_cited_is_a_source(documents: dict[str, Any], model: Model) -> None:
+    for device in model.devices:
+        text = json.dumps({key: value for key, value in documents[device.id].items() if key != "sources"})
+        cited = set(re.findall(r'"manual": "([^"]+)"', text))
+        assert {source["id"] for source in documents[device.id]["sources"]} == cited
+        assert device.manual.id in cited
+
+
+def test_drive_and_bus_are_those_of_the_model(documents: dict[str, Any], model: Model) -> None:
+    for device in model.devices:
+        found = documents[device.id]
+        assert (found["drive"] is None, found["canopen"] is None) == (device.drive is None, device.canopen is None)
+        assert (found["hardware_version"], found["software_version"]) == (
+            device.hardware_version,
+            device.software_version,
+        )
+        if device.drive is not None:
+            assert found["drive"]["index_base"]["value"] == device.drive.index_base
+            for key, entries in (("responses", device.drive.responses), ("modules", device.drive.modules)):
+                assert [(e["value"], e["name"], e["origin"]) for e in found["drive"][key]] == [
+                    (entry.value, entry.name, entry.origin.value) for entry in entries
+                ]
+        if device.canopen is not None:
+            assert [(e["name"], e["base"]) for e in found["canopen"]["cob_ids"]] == [
+                (entry.name, entry.base) for entry in model.cob_ids
+            ]

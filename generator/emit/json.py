@@ -10,13 +10,18 @@ from generator.model import (
     AttributeRow,
     Bit,
     BitField,
+    CanOpenFacts,
     Choice,
     Cite,
+    CobId,
     Code,
     CodeCounts,
     Default,
     Device,
     DictionaryObject,
+    Drive,
+    DriveCommand,
+    DriveModule,
     Erratum,
     ErrorEntry,
     Example,
@@ -39,7 +44,9 @@ from generator.model import (
     Pattern,
     PrintedIndex,
     Range,
+    Response,
     Service,
+    Slot,
     SubIndex,
     SwitchGroup,
     Table,
@@ -66,6 +73,12 @@ def _text(document: Json) -> Output:
 
 def facts(model: Model, device: Device) -> Json:
     """Everything that is known of a device, as the document that generated/json holds."""
+    found = _facts(model, device)
+    cited = _cited(found)
+    return {**found, "sources": [_document(manual) for manual in model.manuals if manual.id in cited]}
+
+
+def _facts(model: Model, device: Device) -> Json:
     return {
         "device": device.id,
         "title": device.title,
@@ -75,7 +88,13 @@ def facts(model: Model, device: Device) -> Json:
         "manual": _manual(device.manual),
         "version": model.version,
         "date": model.date,
+        "hardware_version": device.hardware_version,
+        "software_version": device.software_version,
+        "cite": _cite(device.cite),
         "slots": [slot.name for slot in device.slots],
+        "slot_rules": [_slot(slot) for slot in device.slots],
+        "drive": _drive(device.drive) if device.drive else None,
+        "canopen": _canopen(device.canopen, model.cob_ids) if device.canopen else None,
         "codes": [_code(code) for code in device.codes],
         "objects": [_object(entry) for entry in device.objects],
         "errors": [_error(error) for error in device.errors],
@@ -93,8 +112,82 @@ def _manual(manual: Manual) -> Json:
     return {"id": manual.id, "title": manual.title, "edition": manual.edition, "date": manual.date}
 
 
+def _document(manual: Manual) -> Json:
+    return {
+        **_manual(manual),
+        "publisher": manual.publisher,
+        "document": manual.document,
+        "kind": manual.kind,
+        "url": manual.url,
+    }
+
+
+def _cited(value: object) -> set[str]:
+    """Ids of the manuals that a document cites."""
+    if isinstance(value, Mapping):
+        own = {text for key, text in value.items() if key == "manual" and isinstance(text, str)}
+        return own.union(*map(_cited, value.values()))
+    if isinstance(value, list):
+        return set().union(*map(_cited, value))
+    return set()
+
+
 def _cite(cite: Cite) -> Json:
     return {"manual": cite.manual, "chapter": cite.chapter, "page": cite.page}
+
+
+def _slot(slot: Slot) -> Json:
+    return {
+        "name": slot.name,
+        "first_code": slot.first_code,
+        "last_code": slot.last_code,
+        "code_offset": slot.code_offset,
+        "error_offset": slot.error_offset,
+    }
+
+
+def _drive(drive: Drive) -> Json:
+    return {
+        "id": drive.id,
+        "title": drive.title,
+        "manufacturer": drive.manufacturer,
+        "index_base": {"value": drive.index_base, "cites": list(map(_cite, drive.index_base_cites))},
+        "error_number": {
+            "fields": [
+                {"name": name, "low": field.low, "high": field.high, "reported": name in drive.reported_fields}
+                for name, field in drive.error_fields
+            ],
+            "origin": drive.error_fields_origin.value,
+            "cite": _cite(drive.error_fields_cite),
+        },
+        "responses": [{**_named(response), "aliases": list(response.aliases)} for response in drive.responses],
+        "modules": list(map(_named, drive.modules)),
+        "commands": list(map(_named, drive.commands)),
+    }
+
+
+def _named(entry: Response | DriveModule | DriveCommand) -> Json:
+    return {"value": entry.value, "name": entry.name, "origin": entry.origin.value, "cite": _cite(entry.cite)}
+
+
+def _canopen(canopen: CanOpenFacts, cob_ids: Sequence[CobId]) -> Json:
+    return {
+        "bit_rates": list(canopen.baud_rates),
+        "pdo_granularity": canopen.granularity,
+        "node_address_code": canopen.node_address,
+        "boot_up_master": canopen.boot_up_master,
+        "cite": _cite(canopen.cite),
+        "cob_ids": [
+            {
+                "name": entry.name,
+                "base": entry.base,
+                "broadcast": entry.broadcast,
+                "objects": [_object_key(ref) for ref in entry.objects],
+                "cite": _cite(entry.cite),
+            }
+            for entry in cob_ids
+        ],
+    }
 
 
 def _code(code: Code) -> Json:
