@@ -42,6 +42,9 @@ def _citations(model: Model) -> Iterator[tuple[Cite, Where]]:
         named: list[Cited] = [*drive.responses, *drive.modules, *drive.commands]
         for cite in (*drive.index_base_cites, drive.error_fields_cite, *(n.cite for n in named)):
             yield cite, drive.where
+    standards: list[Placed] = [*model.standard_objects, *model.cob_ids]
+    for defined in standards:
+        yield defined.cite, defined.where
     for device in model.devices:
         yield device.cite, device.where
         entries: list[Placed] = [*device.codes, *device.objects, *device.errors, *device.indicators, *device.switches]
@@ -62,6 +65,7 @@ def _citations(model: Model) -> Iterator[tuple[Cite, Where]]:
 
 def _gsd_citations(gsd: Gsd) -> Iterator[tuple[Cite, Where]]:
     yield gsd.cite, gsd.where
+    yield gsd.telegrams.cite, gsd.telegrams.where
     yield gsd.bit_rates_cite, gsd.max_tsdr.where
     sources = [gsd.max_tsdr, gsd.parameters_source, *(keyword.source for keyword in gsd.keywords)]
     sources += [module.source for module in gsd.modules]

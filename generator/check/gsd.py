@@ -12,21 +12,7 @@ _TEXT = re.compile(r"[ !#-&(-:<-?A-Z\[\]^_a-}]+")
 """Printable ASCII without what a reader known takes for syntax: quotes, ; @ ` ~ and the backslash."""
 _LONGEST_TEXT = 32
 _LONGEST_INFO = 256
-_LIMITS = {
-    "Max_Input_Len": 244,
-    "Max_Output_Len": 244,
-    "Max_Data_Len": 488,
-    "Max_Diag_Data_Len": 244,
-    "Max_User_Prm_Data_Len": 237,
-}
-"""Bytes that the telegrams of PROFIBUS DP hold."""
 _FAMILY = "Slave_Family"
-_DPV1_PARAMETERS = 3
-"""Bytes of user parameters that a slave with DP-V1 takes at least."""
-_BEFORE_TYPE = 7
-"""Bytes of the diagnosis in front of the status type: those of every slave, and the length of the block."""
-_LONGEST_RUN = 128
-"""Bytes that one identifier counts."""
 _WIDEST_AREA = 16
 _DIAGNOSIS_HINT = "correct the bits of the area or the values of its texts"
 
@@ -107,29 +93,30 @@ def lengths(model: Model, device: Device) -> Iterator[Finding]:
                 "correct the keyword that sets the limit, or what exceeds it",
             )
     gsd = device.gsd
-    if gsd and gsd.number("DPV1_Slave") and len(gsd.parameters) < _DPV1_PARAMETERS:
+    if gsd and gsd.number("DPV1_Slave") and len(gsd.parameters) < gsd.telegrams.dpv1_parameters:
         yield _finding(
             "gsd-length",
             device,
             gsd.parameters_source.where,
             "user parameters",
             f"{len(gsd.parameters)} bytes",
-            f"at least {_DPV1_PARAMETERS}",
+            f"at least {gsd.telegrams.dpv1_parameters}",
             "a slave with DP-V1 has its status bytes in front of the user parameters",
-            "begin 'bytes' with the three status bytes",
+            "begin 'bytes' with the status bytes",
         )
 
 
 def _lengths(gsd: Gsd) -> Iterator[tuple[str, int, int, Where]]:
     """Lengths in bytes with their place and limit; of modules that differ in length the longest."""
+    limits = dict(gsd.telegrams.lengths)
     for keyword in gsd.keywords:
-        if keyword.name in _LIMITS and isinstance(keyword.value, int):
-            yield f"keyword {keyword.name}", keyword.value, _LIMITS[keyword.name], keyword.source.where
+        if keyword.name in limits and isinstance(keyword.value, int):
+            yield f"keyword {keyword.name}", keyword.value, limits[keyword.name], keyword.source.where
     directions = gsd.number("Max_Input_Len"), gsd.number("Max_Output_Len")
     for module in {module.family: module for module in gsd.modules}.values():
         place, where = f"module {module.family}", module.source.where
         yield place, module.length, min(directions), where
-        yield f"{place} words", 2 * module.words, _LONGEST_RUN, where
+        yield f"{place} words", 2 * module.words, gsd.telegrams.identifier, where
         yield f"{place} both ways", 2 * module.length, gsd.number("Max_Data_Len"), where
     yield (
         "user parameters",
@@ -138,7 +125,7 @@ def _lengths(gsd: Gsd) -> Iterator[tuple[str, int, int, Where]]:
         gsd.parameters_source.where,
     )
     for area in gsd.diagnosis.areas if gsd.diagnosis else ():
-        end = _BEFORE_TYPE + area.last // 8 + 1
+        end = gsd.telegrams.status_type + area.last // 8 + 1
         yield f"diagnosis {area.id}", end, gsd.number("Max_Diag_Data_Len"), area.source.where
 
 

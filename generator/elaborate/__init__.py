@@ -3,7 +3,7 @@
 from generator.diagnostics import Problems
 from generator.elaborate.codes import Facts
 from generator.elaborate.device import device, drive
-from generator.elaborate.manuals import manual, standard
+from generator.elaborate.manuals import manual, standards
 from generator.elaborate.pins import pins
 from generator.model import Model
 from generator.spec import Spec
@@ -16,15 +16,13 @@ def elaborate(spec: Spec, problems: Problems) -> Model:
         DiagnosticsError: A notation, name or run is wrong; all such problems at once.
     """
     manuals = {m.id: m for m in (manual(file) for file in spec.manuals)}
-    standards = [standard(file, manuals) for file in spec.standards]
+    common = standards(spec.standards, manuals)
     drives = {name: drive(files["drive"], manuals) for name, files in spec.drives.items()}
     shared = {
         name: Facts(files["codes"].root, "codes", "code") if "codes" in files else None
         for name, files in spec.drives.items()
     }
-    objects = tuple(o for objects, _ in standards for o in objects)
-    cob_ids = tuple(c for _, cob_ids in standards for c in cob_ids)
-    devices = [device(files, manuals, drives, shared, objects, cob_ids) for _, files in sorted(spec.devices.items())]
+    devices = [device(files, manuals, drives, shared, common) for _, files in sorted(spec.devices.items())]
     problems.stop()
     assert spec.release is not None
     return Model(
@@ -33,7 +31,7 @@ def elaborate(spec: Spec, problems: Problems) -> Model:
         devices=tuple(d for d in devices if d is not None),
         drives=tuple(drives.values()),
         manuals=tuple(manuals.values()),
-        standard_objects=objects,
-        cob_ids=cob_ids,
+        standard_objects=common.objects,
+        cob_ids=common.cob_ids,
         pins=tuple(pins(spec.names)) if spec.names else (),
     )

@@ -1,6 +1,6 @@
 """Devices and base drives."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 
 from generator.diagnostics import suggestion
 from generator.elaborate import codes as code_table
@@ -12,11 +12,10 @@ from generator.elaborate import objects as object_table
 from generator.elaborate import services as service_table
 from generator.elaborate import telegrams as telegram_table
 from generator.elaborate.common import known_manual, optional_text, origin
-from generator.elaborate.manuals import object_run
+from generator.elaborate.manuals import Standards, object_run
 from generator.model import (
     BitField,
     CanOpenFacts,
-    CobId,
     CodeRef,
     Device,
     Drive,
@@ -27,7 +26,6 @@ from generator.model import (
     ObjectRef,
     Response,
     Slot,
-    StandardObject,
 )
 from generator.notation import RefRun, references
 from generator.tree import Node, SourceFile
@@ -93,8 +91,7 @@ def device(
     manuals: dict[str, Manual],
     drives: Mapping[str, Drive],
     shared: Mapping[str, code_table.Facts | None],
-    standard: Sequence[StandardObject],
-    cob_ids: Sequence[CobId],
+    standards: Standards,
 ) -> Device | None:
     """A device of spec/devices, ``None`` where its manual or drive is unknown."""
     root = files["device"].root
@@ -122,7 +119,7 @@ def device(
     roots = {kind: file.root for kind, file in files.items()}
     layouts = telegram_table.layouts(roots["telegrams"], index) if "telegrams" in roots else ()
     tables = panel.tables(roots["tables"], index) if "tables" in roots else ()
-    service_frame = service_table.Frame(layouts, tables, cob_ids, index)
+    service_frame = service_table.Frame(layouts, tables, standards.cob_ids, index)
     version = root.child("version")
     return Device(
         id=files["device"].stem,
@@ -137,10 +134,12 @@ def device(
         cite=root.cite(),
         slots=slots,
         canopen=_canopen(root),
-        gsd=gsd_file.gsd(roots["gsd"], base, [entry.id for entry in entries]) if "gsd" in roots else None,
+        gsd=gsd_file.gsd(roots["gsd"], base, [entry.id for entry in entries], standards.telegrams)
+        if "gsd" in roots
+        else None,
         attributes=root.cite("attributes") if "attributes" in root else None,
         codes=codes,
-        objects=object_table.objects(files["objects"].root, object_table.Frame(standard, slots, index))
+        objects=object_table.objects(files["objects"].root, object_table.Frame(standards.objects, slots, index))
         if "objects" in files
         else (),
         errors=error_table.errors(files["errors"].root, error_frame) if "errors" in files else (),

@@ -7,13 +7,30 @@ from generator.elaborate.common import fill, origin
 from generator.elaborate.indicators import unique
 from generator.load import Map
 from generator.model import Drive, Gsd
-from generator.model.gsd import BitRate, Consistency, Diagnosis, DiagnosisArea, Keyword, Module, Source, Wording
+from generator.model.gsd import (
+    BitRate,
+    Consistency,
+    Diagnosis,
+    DiagnosisArea,
+    DpTelegrams,
+    Keyword,
+    Module,
+    Source,
+    Wording,
+)
 from generator.notation import value_range
 from generator.tree import Node
 
 
-def gsd(root: Node, drive: Drive | None, errata: Sequence[str]) -> Gsd:
-    """The GSD file of a device's gsd.yaml; ``errata`` are the ids of its ledger."""
+def gsd(root: Node, drive: Drive | None, errata: Sequence[str], telegrams: Sequence[DpTelegrams]) -> Gsd | None:
+    """The GSD file of a device's gsd.yaml, ``None`` where no standard says what the ``telegrams`` hold.
+
+    ``errata`` are the ids of the device's ledger.
+    """
+    if not telegrams:
+        message = "no standard says what the telegrams of PROFIBUS DP hold"
+        root.problems.add("key-missing", root.where, message, hint="add 'profibus_dp:' to a file of spec/standards")
+        return None
     reader = _Reader(drive, errata)
     file, rates, parameters = (_child(root, key) for key in ("file", "bit_rates", "user_parameters"))
     diagnosis = root.child("diagnosis")
@@ -25,6 +42,7 @@ def gsd(root: Node, drive: Drive | None, errata: Sequence[str]) -> Gsd:
         bit_rates=tuple(BitRate(name, int(times)) for name, times in rates.get("rates").items()),
         bit_rates_cite=rates.cite(),
         max_tsdr=reader.source(_child(rates, "max_tsdr")),
+        telegrams=telegrams[0],
         parameters=bytes(parameters.get("bytes")),
         parameters_source=reader.source(parameters),
         modules=tuple(module for node in unique(root, "modules") for module in reader.modules(node)),

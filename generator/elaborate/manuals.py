@@ -1,9 +1,11 @@
 """Sources of facts, and what standards define."""
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
 
 from generator.elaborate.common import OBJECT_TYPES, known_manual, optional_text, runs
 from generator.model import Chapter, CobId, Manual, ObjectRef, StandardObject, StandardSubIndex
+from generator.model.gsd import DpTelegrams
 from generator.notation import references
 from generator.tree import Node, SourceFile
 
@@ -54,8 +56,26 @@ def manual(file: SourceFile) -> Manual:
     )
 
 
-def standard(file: SourceFile, manuals: Mapping[str, Manual]) -> tuple[tuple[StandardObject, ...], tuple[CobId, ...]]:
-    """Objects and connection set that a standard defines."""
+@dataclass(frozen=True, slots=True)
+class Standards:
+    """What the standards define: objects, connection set, telegrams of PROFIBUS DP."""
+
+    objects: tuple[StandardObject, ...]
+    cob_ids: tuple[CobId, ...]
+    telegrams: tuple[DpTelegrams, ...]
+
+
+def standards(files: Iterable[SourceFile], manuals: Mapping[str, Manual]) -> Standards:
+    """What the files of spec/standards define together."""
+    found = [_standard(file, manuals) for file in files]
+    return Standards(
+        tuple(entry for one in found for entry in one.objects),
+        tuple(entry for one in found for entry in one.cob_ids),
+        tuple(entry for one in found for entry in one.telegrams),
+    )
+
+
+def _standard(file: SourceFile, manuals: Mapping[str, Manual]) -> Standards:
     root = file.root
     known_manual(file.manual, root, "manual", manuals)
     objects = tuple(_object(node) for node in root.items("objects"))
@@ -68,10 +88,23 @@ def standard(file: SourceFile, manuals: Mapping[str, Manual]) -> tuple[tuple[Sta
                 i for run in node.read("objects", references) or () for i in run.items if isinstance(i, ObjectRef)
             ),
             cite=node.cite(),
+            where=node.where,
         )
         for node in root.items("cob_ids")
     )
-    return objects, cob_ids
+    telegrams = root.child("profibus_dp")
+    return Standards(objects, cob_ids, (_telegrams(telegrams),) if telegrams else ())
+
+
+def _telegrams(node: Node) -> DpTelegrams:
+    return DpTelegrams(
+        lengths=tuple((keyword, int(length)) for keyword, length in node.get("lengths").items()),
+        identifier=int(node.get("identifier")),
+        dpv1_parameters=int(node.get("dpv1_parameters")),
+        status_type=int(node.get("status_type")),
+        cite=node.cite(),
+        where=node.where,
+    )
 
 
 def _object(node: Node) -> StandardObject:
@@ -85,6 +118,7 @@ def _object(node: Node) -> StandardObject:
         category=str(node.get("category")),
         subindexes=tuple(_subindexes(subs)) if subs else (),
         cite=node.cite(),
+        where=node.where,
     )
 
 

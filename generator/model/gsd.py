@@ -104,6 +104,23 @@ class Diagnosis:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class DpTelegrams:
+    """What the telegrams of PROFIBUS DP hold, in bytes.
+
+    ``lengths``: greatest value of each keyword that counts bytes.  ``identifier``: bytes that one identifier counts.
+    ``dpv1_parameters``: user parameters that a device with DP-V1 takes at least.  ``status_type``: bytes of the
+    diagnosis in front of the status type, those of every device included.
+    """
+
+    lengths: tuple[tuple[str, int], ...]
+    identifier: int
+    dpv1_parameters: int
+    status_type: int
+    cite: Cite
+    where: Where
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Gsd:
     """A GSD file: ``suffixes`` are (suffix, language) of its variants, of which the first is the default file.
 
@@ -117,6 +134,7 @@ class Gsd:
     bit_rates: tuple[BitRate, ...]
     bit_rates_cite: Cite
     max_tsdr: Source
+    telegrams: DpTelegrams
     parameters: bytes
     parameters_source: Source
     modules: tuple[Module, ...]

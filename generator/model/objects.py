@@ -99,6 +99,7 @@ class StandardObject:
     category: str
     subindexes: tuple[StandardSubIndex, ...]
     cite: Cite
+    where: Where
 
     def subindex(self, number: int) -> StandardSubIndex | None:
         """What the standard says of that sub-index, ``None`` where it defines none."""
@@ -114,3 +115,4 @@ class CobId:
     broadcast: bool
     objects: tuple[ObjectRef, ...]
     cite: Cite
+    where: Where
