@@ -7,8 +7,10 @@ from shutil import which
 import pytest
 from hypothesis import HealthCheck, settings
 from playwright.sync_api import Browser, BrowserContext, sync_playwright
+from rust_crate import Cargo, texts
 from visitor import FLAGS, Visitor
 
+from generator.emit import rust
 from generator.model import Model
 from generator.pipeline import compile_model, render, render_site
 from generator.write import write
@@ -36,6 +38,24 @@ def generated(model: Model, tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("generated")
     write(folder, render(model), {})
     return folder
+
+
+@pytest.fixture(scope="session")
+def cargo(root: Path) -> Cargo:
+    """Runs cargo on copies of the crate."""
+    return Cargo(root)
+
+
+@pytest.fixture(scope="session")
+def crate_files(model: Model) -> dict[str, str]:
+    """Texts of the Rust crate by path."""
+    return texts(rust.TARGET.render(model))
+
+
+@pytest.fixture(scope="session")
+def crate(cargo: Cargo, crate_files: dict[str, str]) -> Path:
+    """Folder of the Rust crate, with the versions of its optional dependencies."""
+    return cargo.locked("crate", crate_files)
 
 
 @pytest.fixture(scope="session")

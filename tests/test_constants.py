@@ -294,7 +294,7 @@ def test_constants_of_rust(root: Path, published: Model) -> None:
     files = {
         str(file.relative_to(home)): file.read_text(encoding="utf-8") for file in home.rglob("*") if file.is_file()
     }
-    crate = cargo.locked("crate", {path: text for path, text in files.items() if path != "Cargo.lock"})
+    crate = cargo.locked("published", {path: text for path, text in files.items() if path != "Cargo.lock"})
     test_rust.compare(cargo.succeed(crate, "run", "--offline", "--quiet", "--example", "dump"), published)
     expected = dict(test_rust.probes(published))
     assert cargo.probe("probe", crate, ["*"], list(expected)) == expected

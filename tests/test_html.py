@@ -12,6 +12,7 @@ from xml.etree.ElementTree import Element
 
 import html5lib
 import pytest
+from bare import bare
 
 from generator import dcf
 from generator.emit import eds, gsd, html, xdd
@@ -1594,27 +1595,7 @@ def test_links_hold_in_an_excerpt(model: Model) -> None:
 
 
 def test_a_device_may_lack_everything(model: Model) -> None:
-    bare = dataclasses.replace(
-        model.devices[0],
-        id="bare",
-        slots=(),
-        codes=(),
-        objects=(),
-        errors=(),
-        indicators=(),
-        switches=(),
-        tables=(),
-        formulas=(),
-        layouts=(),
-        services=(),
-        examples=(),
-        errata=(),
-        drive=None,
-        canopen=None,
-        hardware_version=None,
-        software_version=None,
-    )
-    files = html.render(dataclasses.replace(excerpt(model), devices=(*excerpt(model).devices, bare)))
+    files = html.render(dataclasses.replace(excerpt(model), devices=(*excerpt(model).devices, bare(model.devices[0]))))
     pages = {path: Page(output.text) for path, output in files.items() if path.endswith(".html")}
     assert not list(broken_links(pages))
     assert len(with_class(pages["index.html"].root, "card")) == 2

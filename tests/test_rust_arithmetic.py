@@ -17,16 +17,6 @@ from generator.naming import safe, snake
 
 
 @pytest.fixture(scope="module")
-def cargo(root: Path) -> Cargo:
-    return Cargo(root)
-
-
-@pytest.fixture(scope="module")
-def crate(cargo: Cargo, model: Model) -> Path:
-    return cargo.locked("crate", texts(TARGET.render(model)))
-
-
-@pytest.fixture(scope="module")
 def edge(model: Model) -> Model:
     device = next(device for device in model.devices if device.indicators and device.switches)
     changes = {

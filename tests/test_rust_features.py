@@ -8,27 +8,11 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from rust_crate import Cargo, manifest, texts
+from rust_crate import Cargo, manifest
 
-from generator.emit.rust import TARGET
 from generator.model import Model, NodeRelative
 
 BARE_METAL = "thumbv7em-none-eabihf"
-
-
-@pytest.fixture(scope="module")
-def cargo(root: Path) -> Cargo:
-    return Cargo(root)
-
-
-@pytest.fixture(scope="module")
-def files(model: Model) -> dict[str, str]:
-    return texts(TARGET.render(model))
-
-
-@pytest.fixture(scope="module")
-def crate(cargo: Cargo, files: dict[str, str]) -> Path:
-    return cargo.locked("crate", files)
 
 
 PROGRAM = """use drivespec_devices::codec::Repeated;
@@ -93,19 +77,19 @@ fn main() {
 DEPENDENCIES = 'defmt = "1"\nserde_json = "1"\n'
 
 
-def test_serde_and_defmt_write_the_facts(cargo: Cargo, crate: Path, files: dict[str, str], model: Model) -> None:
+def test_serde_and_defmt_write_the_facts(cargo: Cargo, crate: Path, crate_files: dict[str, str], model: Model) -> None:
     """A program writes what the crate holds through both features."""
     enums = []
-    for path, text in files.items():
+    for path, text in crate_files.items():
         if path.startswith("src/") and path != "src/macros.rs":
             module = path.removeprefix("src/").removesuffix(".rs").replace("/", "::")
             enums += [
                 f"drivespec_devices::{module}::{name}" for name in re.findall(r"^    (\w+): [iu]\d+ {$", text, re.M)
             ]
-    assert len(enums) == sum(text.count("\nselection! {") for text in files.values())
+    assert len(enums) == sum(text.count("\nselection! {") for text in crate_files.values())
     entry = next(
         f"drivespec_devices::{path.removeprefix('src/').removesuffix('.rs').replace('/', '::')}::{found[1]}"
-        for path, text in files.items()
+        for path, text in crate_files.items()
         if path.endswith("telegrams.rs") and (found := re.search(r"pub struct (\w+Entry) {", text))
     )
     program = PROGRAM.replace("SELECTIONS", "\n    ".join(f"selection!({name});" for name in enums))
@@ -180,9 +164,9 @@ def test_builds_for_a_microcontroller(cargo: Cargo, crate: Path) -> None:
     cargo.succeed(crate, "check", "--offline", "--target", BARE_METAL, "--features", "serde,defmt")
 
 
-def test_builds_with_the_oldest_rust(cargo: Cargo, crate: Path, files: dict[str, str]) -> None:
+def test_builds_with_the_oldest_rust(cargo: Cargo, crate: Path, crate_files: dict[str, str]) -> None:
     """Without features, for each of which its own dependency decides."""
-    found = re.search(r'^rust-version = "([\d.]+)"$', files["Cargo.toml"], re.M)
+    found = re.search(r'^rust-version = "([\d.]+)"$', crate_files["Cargo.toml"], re.M)
     assert found
     rustup = shutil.which("rustup")
     installed = (
@@ -194,7 +178,7 @@ def test_builds_with_the_oldest_rust(cargo: Cargo, crate: Path, files: dict[str,
     if toolchain is None:
         pytest.skip(f"left out: Rust {found[1]} is not installed (rustup toolchain install {found[1]})")
     folder = cargo.place(
-        "oldest", {"Cargo.toml": manifest("oldest", crate, '"std"'), "src/main.rs": files["examples/dump.rs"]}
+        "oldest", {"Cargo.toml": manifest("oldest", crate, '"std"'), "src/main.rs": crate_files["examples/dump.rs"]}
     )
     printed = cargo.succeed(folder, f"+{toolchain[0]}", "run", "--offline", "--quiet")
     assert printed == cargo.succeed(crate, "run", "--offline", "--quiet", "--example", "dump")

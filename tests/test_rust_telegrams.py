@@ -5,7 +5,6 @@ import re
 from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
-from pathlib import Path
 
 import pytest
 from rust_crate import Cargo, edge_layouts, manifest, texts
@@ -25,11 +24,6 @@ REFUSALS = (
     (" are left", "truncated"),
 )
 """What the reference codec says, and the name of the error everywhere."""
-
-
-@pytest.fixture(scope="module")
-def cargo(root: Path) -> Cargo:
-    return Cargo(root)
 
 
 @pytest.fixture(scope="module")

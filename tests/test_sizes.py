@@ -7,11 +7,10 @@ import subprocess
 from pathlib import Path
 
 import pytest
-from rust_crate import Cargo, manifest, texts
+from rust_crate import Cargo, manifest
 from test_c import tool
 
 from generator.emit import names
-from generator.emit.rust import TARGET
 from generator.emit.rust.syntax import type_name
 from generator.model import Code, Device, Layout, Model
 from generator.naming import screaming, snake
@@ -131,16 +130,6 @@ def test_c_tables_hold_no_addresses(model: Model, include: Path, tmp_path: Path,
 
 
 # Rust.
-
-
-@pytest.fixture(scope="module")
-def cargo(root: Path) -> Cargo:
-    return Cargo(root)
-
-
-@pytest.fixture(scope="module")
-def crate(cargo: Cargo, model: Model) -> Path:
-    return cargo.place("crate", texts(TARGET.render(model)))
 
 
 def built_rust(cargo: Cargo, crate: Path, name: str, program: str, *flags: str) -> Path:

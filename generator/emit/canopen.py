@@ -5,7 +5,7 @@ configurations, device descriptions in XML, simulated slaves) start from it too.
 """
 
 from collections import Counter
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from enum import Enum
 from math import ceil, floor
@@ -19,6 +19,7 @@ from generator.model import (
     Default,
     Device,
     DictionaryObject,
+    Model,
     NodeRelative,
     Option,
     Range,
@@ -196,6 +197,24 @@ def object_dictionaries(device: Device) -> tuple[ObjectDictionary, ...]:
             for product in _products(device)
         ]
     return tuple(dictionaries)
+
+
+def named_dictionaries(
+    model: Model, kind: str, name: Callable[[ObjectDictionary], str]
+) -> Iterator[tuple[str, ObjectDictionary]]:
+    """Every object dictionary with the name of its file; ``kind`` is that of the files.
+
+    Raises:
+        EmitError: Two files would share a name on a system that knows no capitals.
+    """
+    taken: set[str] = set()
+    for device in model.devices:
+        for dictionary in object_dictionaries(device):
+            file = name(dictionary)
+            if file.lower() in taken:
+                raise EmitError("name-collision", device.where, f"two {kind} files would be called '{file}'")
+            taken.add(file.lower())
+            yield file, dictionary
 
 
 def _ordered(entries: Iterable[BusObject]) -> tuple[BusObject, ...]:

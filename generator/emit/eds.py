@@ -23,8 +23,8 @@ from generator.emit.canopen import (
     Entry,
     ObjectDictionary,
     Remark,
+    named_dictionaries,
     number_text,
-    object_dictionaries,
 )
 from generator.emit.environment import render as render_template
 from generator.model import DataType, Erratum, Model, NodeRelative, Where
@@ -161,13 +161,9 @@ def render(model: Model) -> dict[str, Output]:
         EmitError: A name, default or text cannot be written in an EDS, or two files would share a name.
     """
     outputs: dict[str, Output] = {}
-    for device in model.devices:
-        rendered: dict[BusObject, str] = {}
-        for dictionary in object_dictionaries(device):
-            name = file_name(dictionary)
-            if name.lower() in (other.lower() for other in outputs):
-                raise EmitError("name-collision", device.where, f"two EDS files would be called '{name}'")
-            outputs[name] = output(text(model, dictionary, name, rendered))
+    rendered: dict[BusObject, str] = {}
+    for name, dictionary in named_dictionaries(model, "EDS", file_name):
+        outputs[name] = output(text(model, dictionary, name, rendered))
     return outputs
 
 

@@ -13,8 +13,8 @@ from generator.emit.canopen import (
     BusObject,
     Entry,
     ObjectDictionary,
+    named_dictionaries,
     number_text,
-    object_dictionaries,
 )
 from generator.emit.eds import caption, file_stem, lists, remarks
 from generator.emit.environment import render as render_template
@@ -94,16 +94,12 @@ def render(model: Model) -> dict[str, Output]:
         EmitError: A text cannot be written in XML, or two files would share a name.
     """
     outputs: dict[str, Output] = {}
-    for device in model.devices:
-        rendered: dict[BusObject, Value] = {}
-        for dictionary in object_dictionaries(device):
-            name = file_name(dictionary)
-            if name.lower() in (other.lower() for other in outputs):
-                raise EmitError("name-collision", device.where, f"two XDD files would be called '{name}'")
-            for entry in dictionary.objects:
-                if entry not in rendered:
-                    rendered[entry] = _object(entry)
-            outputs[name] = Output(_text(model, dictionary, name, rendered))
+    rendered: dict[BusObject, Value] = {}
+    for name, dictionary in named_dictionaries(model, "XDD", file_name):
+        for entry in dictionary.objects:
+            if entry not in rendered:
+                rendered[entry] = _object(entry)
+        outputs[name] = Output(_text(model, dictionary, name, rendered))
     return outputs
 
 

@@ -15,8 +15,6 @@ KEYS = 1 << 16
 """Numbers of a measurement: more than a branch predictor learns by heart."""
 PROBES = 1 << 18
 """Random numbers that all ways have to agree on."""
-_REPORTED = ("response", "instance")
-"""Fields of a number that the drive fills when it reports an error; they are masked out."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -99,5 +97,4 @@ def cases(model: Model) -> Iterator[Case]:
 
 
 def _mask(device: Device, kind: str) -> int:
-    fields = device.drive.error_fields if device.drive and kind == "device" else ()
-    return 0xFFFF_FFFF & ~sum(field.mask for name, field in fields if name in _REPORTED)
+    return (device.error_mask if kind == "device" else 0) or 0xFFFF_FFFF
