@@ -567,7 +567,8 @@ def test_names_in_code_are_those_of_the_generated_code(site: Path, generated: Pa
     for device in model.devices:
         header = (generated / "c/include/drivespec" / f"{device.id}.h").read_text(encoding="utf-8")
         stub = (generated / "python/drivespec_devices" / f"{device.id}.pyi").read_text(encoding="utf-8")
-        crate = "".join(path.read_text(encoding="utf-8") for path in (generated / "rust/src" / device.id).glob("*.rs"))
+        modules = (generated / "rust/src" / device.id).rglob("*.rs")
+        crate = {path.stem: set(re.findall(r"pub const (\w+):", path.read_text(encoding="utf-8"))) for path in modules}
         shown: set[str] = set()
         for path in site.glob(f"{device.id}-*.html"):
             page = path.read_text(encoding="utf-8")
@@ -575,14 +576,14 @@ def test_names_in_code_are_those_of_the_generated_code(site: Path, generated: Pa
                 shown |= set(re.findall(r"<code>([^<]+)</code>", page.partition('class="names"')[2]))
         constants = {"C": set(re.findall(r"#define (\w+)", header))}
         constants["Python"] = {f"{device.id}.{name}" for name in re.findall(r"^(\w+): Final", stub, re.M)}
-        constants["Rust"] = set(re.findall(r"pub const (\w+):", crate))
         for name in shown:
             if "::" in name:
-                assert name.rpartition("::")[2] in constants["Rust"], name
+                assert name.split("::")[-1] in crate[name.split("::")[-2]], name
             else:
                 assert name in constants["Python" if "." in name else "C"], name
-        # Three names for each code and object, but for the things of several slots one page each.
-        assert len(shown) == 3 * (len(device.codes) + len(device.objects)) or not device.codes + device.objects
+        # Three names for each code, object and error; a run has two more, for its last number in C and Rust.
+        runs = sum(error.count > 1 for error in device.errors)
+        assert len(shown) == 3 * (len(device.codes) + len(device.objects) + len(device.errors)) + 2 * runs
 
 
 def test_permanent_link_of_the_second_slot_is_in_view_and_marked(visitor: Visitor, model: Model) -> None:

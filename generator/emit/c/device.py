@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 from generator.emit.c.prose import cited, errata, listed, provenance, references, runs, sentence
 from generator.emit.c.syntax import comment
-from generator.emit.c.writer import Header, Names, Section, Writer
+from generator.emit.c.writer import Header, Names, Section, Writer, run_names
 from generator.emit.names import code_name, error_name, object_name
 from generator.model import (
     Code,
@@ -44,7 +44,7 @@ def device_header(model: Model, device: Device, names: Names) -> Header:
     sections += [_object(entry, device, prefix, names) for entry in device.objects]
     sections += [_identifiers(table, device, prefix, names) for table in device.tables if identified(table)]
     widths = error_widths(device)
-    sections += [_error(error, device, prefix, widths[error.kind], names) for error in device.errors]
+    sections += [_error(error, device, widths[error.kind], names) for error in device.errors]
     return Header(
         f"{device.id}.h",
         guard,
@@ -259,17 +259,26 @@ def _subindex(run: Sequence[SubIndex], writer: Writer) -> None:
     writer.fields(start, sub.fields, sub.data_type)
 
 
-def _error(error: ErrorEntry, device: Device, prefix: str, bits: int, names: Names) -> Section:
-    number = f"{error.number:0{bits // 4}X}"
+def error_symbols(device: Device, error: ErrorEntry) -> tuple[str, ...]:
+    """Names of the constants of an error: one, or those of both ends of a run."""
+    name = f"{_error_prefix(device, error, error_widths(device)[error.kind])}_{error_name(error).upper()}"
+    return (name,) if error.count == 1 else run_names(name)
+
+
+def _error_prefix(device: Device, error: ErrorEntry, bits: int) -> str:
     word = "ERROR" if error.kind == "device" else error.kind.upper()
-    writer = Writer(names, f"{prefix}_{word}_{number}", "", error.where)
+    return f"{device_prefix(device)}_{word}_{error.number:0{bits // 4}X}"
+
+
+def _error(error: ErrorEntry, device: Device, bits: int, names: Names) -> Section:
+    writer = Writer(names, _error_prefix(device, error, bits), "", error.where)
     label = error_name(error).upper()
     if error.count == 1:
         writer.number(label, error.number, "error number", bits, hexadecimal=True)
     else:
         writer.run(label, error.number, error.last, bits)
     return writer.section(
-        f"0x{number} {error.name}",
+        f"0x{error.number:0{bits // 4}X} {error.name}",
         [
             error.description,
             " ".join(filter(None, _error_facts(error))),

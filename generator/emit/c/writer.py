@@ -127,9 +127,10 @@ class Writer:
         self._add(suffix, integer(value, bits, hexadecimal=hexadecimal), text)
 
     def run(self, suffix: str, first: int, last: int, bits: int) -> None:
-        """Write the ends of a run of numbers; ``suffix`` is cut so that both names are told apart."""
-        for end, value, text in (("_FIRST", first, "first number"), ("_LAST", last, "last number")):
-            self._add_named(_cut(f"{self._prefix}_{suffix}", end), integer(value, bits, hexadecimal=True), text)
+        """Write the ends of a run of numbers."""
+        ends = ((first, "first number"), (last, "last number"))
+        for name, (value, text) in zip(run_names(f"{self._prefix}_{suffix}"), ends, strict=True):
+            self._add_named(name, integer(value, bits, hexadecimal=True), text)
 
     def text(self, suffix: str, value: str, text: str) -> None:
         """Write a string literal."""
@@ -262,6 +263,11 @@ def _fit(prefix: str, number: str, name: str, suffix: str = "") -> str:
     if len(whole) <= SIGNIFICANT:
         return whole
     return _cut(f"{prefix}_{number}_{label}", suffix)
+
+
+def run_names(name: str) -> tuple[str, str]:
+    """Names of the ends of a run, cut so that both are told apart."""
+    return _cut(name, "_FIRST"), _cut(name, "_LAST")
 
 
 def _cut(name: str, suffix: str) -> str:

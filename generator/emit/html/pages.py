@@ -6,7 +6,7 @@ from functools import partial
 from typing import TypeVar
 
 from generator.emit.html.blocks import Entry, Fact, Group
-from generator.emit.html.codenames import code_names, object_names
+from generator.emit.html.codenames import ErrorNames, code_names, object_names
 from generator.emit.html.codes import code_entry, code_group
 from generator.emit.html.contents import PART, DeviceLists, Section, listed, sections
 from generator.emit.html.coverage import Coverage, coverage
@@ -325,10 +325,12 @@ def _entries(device: Device, relations: Relations, part: str) -> Iterator[_Entry
                     path, _related(object_entry, relations.of_object, found), partial(object_bus, entry=found), names
                 )
         case "errors":
+            error_names = ErrorNames(device)
             for errors in error_entries(device, device.errors):
                 path = page_of(device, error_id(errors[0].kind, errors[0].number))
+                names = error_names.of(errors)
                 yield _Entry(
-                    path, _related(error_entry, relations.of_errors, errors), partial(error_bus, entry=errors), ()
+                    path, _related(error_entry, relations.of_errors, errors), partial(error_bus, entry=errors), names
                 )
 
 

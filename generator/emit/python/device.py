@@ -142,12 +142,12 @@ class DeviceBuilder:
 
     def _error_constants(self) -> Iterator[ConstantView]:
         errors = self._device.errors
-        for name, error in zip(_error_names(errors), errors, strict=True):
+        for name, error in zip(error_names(errors), errors, strict=True):
             self._scope.add(name, at(error.where, error.number))
             yield ConstantView(name, f"0x{error.number:08X}", self._docs.error(error))
 
 
-def _error_names(errors: Sequence[ErrorEntry]) -> list[str]:
+def error_names(errors: Sequence[ErrorEntry]) -> list[str]:
     """Constants of errors, after their kind; a name that stands more than once gets the number appended."""
     prefixes = {"device": "error"}
     plain = [snake(prefixes.get(error.kind, error.kind), names.error_name(error)).upper() for error in errors]

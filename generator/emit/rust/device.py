@@ -303,7 +303,7 @@ class DeviceFiles:
         scope = Scope(f"errors of kind {kind} of {self.module.name}")
         for name in ("TABLE", "ENTRIES", "HELP", "INDEX", "PLACES", "SEEDS"):
             scope.add(name, self.device.where)
-        named = list(zip(_error_names(errors), errors, strict=True))
+        named = list(zip(error_names(errors), errors, strict=True))
         for name, error in named:
             scope.add(name, error.where)
             if error.count > 1:
@@ -397,7 +397,7 @@ def _error_tables(device: Device) -> dict[str, list[ErrorEntry]]:
     return tables
 
 
-def _error_names(errors: Sequence[ErrorEntry]) -> list[str]:
+def error_names(errors: Sequence[ErrorEntry]) -> list[str]:
     """Names of constants; the number is appended to a designation that stands more than once."""
     plain = [names.error_name(error) for error in errors]
     counts = Counter(plain)
