@@ -6,7 +6,7 @@ MAKEFLAGS += --no-builtin-rules
 PYTHON ?= python3
 VENV := .venv
 RUN := $(VENV)/bin/python
-SOURCES := $(shell find spec generator templates -type f -not -path '*/__pycache__/*' -not -name '.*')
+SOURCES := $(shell find spec generator templates LICENSE -type f -not -path '*/__pycache__/*' -not -name '.*')
 FUZZ_SECONDS ?= 60
 LIBFUZZER = -max_total_time=$(FUZZ_SECONDS) -max_len=300 -verbosity=0 -print_funcs=0 -print_final_stats=1
 PIP := $(RUN) -m pip install --quiet --disable-pip-version-check

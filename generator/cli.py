@@ -133,7 +133,8 @@ def _label(spec: Path) -> str:
 def _build(spec: Path, out: Path, style: str, url: str | None) -> int:
     """Build the artifacts, or the site where there is a ``url``, which may be empty."""
     sources = _digests(spec)
-    parts = [VERSION, _digests(_ROOT / "generator"), _digests(_ROOT / "templates"), sources, url]
+    own = [_digests(_ROOT / "generator"), _digests(_ROOT / "templates"), digest((_ROOT / "LICENSE").read_bytes())]
+    parts = [VERSION, *own, sources, url]
     state = digest(json.dumps(parts).encode())
     if _state(out) == state and is_current(out):
         print(f"{out.name}: up to date")

@@ -51,6 +51,7 @@ def test_the_package_holds_every_header(c: Path, installed: Path) -> None:
     headers = {path.name for path in (c / "include/drivespec").iterdir()}
     assert {path.name for path in (installed / "include/drivespec").iterdir()} == headers
     assert any(name.endswith("_telegrams.h") for name in headers)
+    assert (installed / "share/licenses/drivespec/LICENSE").read_bytes() == (c / "LICENSE").read_bytes()
 
 
 def test_every_self_test_is_registered(c: Path) -> None:

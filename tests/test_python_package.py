@@ -1129,6 +1129,7 @@ def test_wheel_holds_every_file(wheel: Path, distribution: Path, model: Model) -
     assert wheel.name == f"drivespec_devices-{model.version}-py3-none-any.whl"
     assert f"\nVersion: {model.version}\n" in metadata and "\nRequires-Python: >=3.9\n" in metadata
     assert "Requires-Dist" not in metadata
+    assert any(entry.endswith(".dist-info/licenses/LICENSE") for entry in entries)
 
 
 def test_installed_wheel_works(wheel: Path, distribution: Path, model: Model, tmp_path: Path) -> None:

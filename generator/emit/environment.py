@@ -34,3 +34,8 @@ def render(template: str, **view: object) -> str:
         jinja2.UndefinedError: The template names something that the view does not hold.
     """
     return environment().get_template(template).render(**view)
+
+
+def license_text() -> str:
+    """The licence of the project, which every library takes along."""
+    return (TEMPLATES.parent / "LICENSE").read_text(encoding="utf-8")

@@ -14,6 +14,7 @@ from generator.emit.c.panel import device_panel, shared_panel
 from generator.emit.c.tables import Tables, device_tables
 from generator.emit.c.telegrams import Telegrams, device_telegrams, runtime
 from generator.emit.c.writer import Header, Names
+from generator.emit.environment import license_text
 from generator.emit.environment import render as render_template
 from generator.model import Model
 
@@ -52,6 +53,7 @@ def render(model: Model) -> dict[str, Output]:
     parts = package(model)
     for name in ("CMakeLists.txt", "drivespec.pc.in", "README.md"):
         files[name] = _ascii(f"c/{name}.j2", package=parts)
+    files["LICENSE"] = Output(license_text())
     return files
 
 

@@ -5,6 +5,7 @@ that importing a device stays cheap; a stub file shows all of it to type checker
 """
 
 from generator.emit.base import Output, Target
+from generator.emit.environment import license_text
 from generator.emit.environment import render as fill_template
 from generator.emit.python.device import DeviceBuilder
 from generator.emit.python.text import manual_text
@@ -72,6 +73,7 @@ def render(model: Model) -> dict[str, Output]:
     files = {
         "pyproject.toml": Output(fill_template("python/pyproject.toml.j2", **shared)),
         "README.md": Output(fill_template("python/README.md.j2", **shared)),
+        "LICENSE": Output(license_text()),
         f"{PACKAGE}/py.typed": Output(""),
     }
     vectors = [

@@ -8,6 +8,7 @@ first serve both.
 from collections.abc import Mapping, Sequence
 
 from generator.emit.base import Output, Target
+from generator.emit.environment import license_text
 from generator.emit.environment import render as fill
 from generator.emit.rust import facts, words
 from generator.emit.rust.device import DeviceFiles
@@ -99,6 +100,7 @@ def _crate_files(
         "README.md": fill(
             "rust/README.md.j2", version=model.version, date=model.date, modules=modules, example=example_lines
         ),
+        "LICENSE": license_text(),
         "rustfmt.toml": fill("rust/rustfmt.toml.j2", notice=notice(model, manuals, "#")),
         "examples/dump.rs": fill("rust/dump.rs.j2", notice=head),
         "src/lib.rs": fill(
