@@ -118,6 +118,12 @@ def test_the_rest_is_that_of_the_model(documents: dict[str, Any], model: Model) 
             assert group["values"] == {row.value: row.positions for row in fact.rows}
         for table, known in zip(document["tables"], device.tables, strict=True):
             assert [tuple(row) for row in table["rows"]] == list(known.rows)
+            assert (table["connector"] is None) == (known.assignment is None)
+            if known.assignment is not None:
+                assert table["connector"]["signals"] == {str(pin): text for pin, text in known.assignment.signals}
+                assert [(c["number"], c["right"], c["down"]) for c in table["connector"]["contacts"]] == [
+                    (c.number, c.right, c.down) for c in known.assignment.connector.contacts
+                ]
         assert [e["id"] for e in document["errata"]] == [e.id for e in device.errata]
         _compare_telegrams(document["telegrams"], device)
 

@@ -412,3 +412,86 @@ def test_a_row_that_says_nothing_of_an_led_fits_whatever_it_shows(model: Model) 
         {notation(p) for r in table.rows[1:] for p in r.patterns[:1]} | {"off"}
     )
     assert finder([]) is None
+
+
+# Connectors
+
+
+SEEN = """() => [...document.querySelectorAll(".connector svg")].map((svg) => {
+  const box = (it) => {
+    const { left, right, top, bottom } = it.getBoundingClientRect();
+    return [left, right, top, bottom];
+  };
+  const texts = [...svg.querySelectorAll("text")].map((it) => [it.textContent, box(it), !!it.closest("g")]);
+  return [svg.closest("[id]").id, box(svg), box(svg.querySelector(".shell")), texts];
+})"""
+"""Each drawing by the id around it: its box, that of the shell, its texts with their boxes, whether one is a number."""
+Box = list[float]
+
+
+def overlap(a: Box, b: Box) -> bool:
+    return a[0] < b[1] - 0.5 and b[0] < a[1] - 0.5 and a[2] < b[3] - 0.5 and b[2] < a[3] - 0.5
+
+
+@pytest.mark.parametrize("width", [320, 1280])
+def test_connectors_show_each_signal_at_its_contact(visitor: Visitor, model: Model, width: int) -> None:
+    """Every contact and label is whole, none covers another, and a label is nearest to the contact that carries it."""
+    visitor.page.set_viewport_size({"width": width, "height": 900})
+    drawn = 0
+    for device in model.devices:
+        known = {f"table-{table.id}": table.assignment for table in device.tables if table.assignment}
+        found = visitor.open(f"{device.id}-tables.html").evaluate(SEEN)
+        assert [name for name, *_ in found] == list(known)
+        for name, svg, shell, texts in found:
+            assignment = known[name]
+            assert assignment is not None and svg[1] <= width
+            assert all(svg[0] <= b[0] and b[1] <= svg[1] and svg[2] <= b[2] and b[3] <= svg[3] for _, b, _ in texts)
+            assert not any(overlap(a[1], b[1]) for place, a in enumerate(texts) for b in texts[:place])
+            numbers = {text: box for text, box, inside in texts if inside}
+            assert set(numbers) == {str(contact.number) for contact in assignment.connector.contacts}
+            labels = [(text, box) for text, box, inside in texts if not inside]
+            expected = {str(pin): signal for pin, signal in assignment.signals if signal != "-"}
+            assert sorted(text for text, _ in labels) == sorted(expected.values())
+            middle = (shell[2] + shell[3]) / 2
+            rows = {box[2] for box in numbers.values()}
+            for text, box in labels:
+                above = box[3] <= shell[2] + 1
+                near = [
+                    (abs(sum(place[:2]) - sum(box[:2])), pin)
+                    for pin, place in numbers.items()
+                    if len(rows) == 1 or (place[2] < middle) == above
+                ]
+                assert expected[min(near)[1]] == text
+            drawn += 1
+    assert drawn > 1
+
+
+def test_contacts_stand_as_the_standards_say(visitor: Visitor, model: Model) -> None:
+    """Seen onto a Sub-D plug contact 1 is at the upper left, onto a socket at the upper right; RJ45 counts upwards."""
+    orders = {
+        "9-pin Sub-D plug": [["1", "2", "3", "4", "5"], ["6", "7", "8", "9"]],
+        "9-pin Sub-D socket": [["5", "4", "3", "2", "1"], ["9", "8", "7", "6"]],
+        "RJ45 socket": [["1", "2", "3", "4", "5", "6", "7", "8"]],
+    }
+    seen = set()
+    for device in model.devices:
+        page = visitor.open(f"{device.id}-tables.html")
+        for _, _, _, texts in page.evaluate(SEEN):
+            rows: dict[float, list[tuple[float, str]]] = {}
+            for text, box, inside in texts:
+                if inside:
+                    rows.setdefault(round(box[2]), []).append((box[0], text))
+            orders_seen = [[text for _, text in sorted(rows[top])] for top in sorted(rows)]
+            seen |= {name for name, order in orders.items() if order == orders_seen}
+            assert orders_seen in orders.values()
+        for caption in page.locator(".connector figcaption").all_text_contents():
+            assert caption.split(",")[0] in orders and "from a standard" in caption
+    assert seen == set(orders)
+
+
+def test_connectors_stand_on_the_overview_and_on_paper(visitor: Visitor, model: Model) -> None:
+    for device in model.devices:
+        names = [table.assignment.connector.name for table in device.tables if table.assignment]
+        for page in ("", "-sheet"):
+            captions = visitor.open(f"{device.id}{page}.html").locator(".connector figcaption").all_text_contents()
+            assert [caption.split(",")[0] for caption in captions] == names

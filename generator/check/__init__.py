@@ -32,6 +32,7 @@ RULES: tuple[Callable[[Model, Device], Iterator[Finding]], ...] = (
     telegrams.identifiers,
     telegrams.services,
     telegrams.formulas,
+    telegrams.assignments,
     telegrams.switches,
     telegrams.patterns,
     gsd.identity,

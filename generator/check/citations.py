@@ -52,6 +52,9 @@ def _citations(model: Model) -> Iterator[tuple[Cite, Where]]:
         entries += [row for table in device.indicators for row in table.rows]
         for entry in entries:
             yield entry.cite, entry.where
+        for table in device.tables:
+            if table.assignment is not None:
+                yield table.assignment.connector.cite, table.assignment.connector.where
         for group in device.switches:
             for part in (group.block, group.delivered, group.code_counts):
                 if part is not None:

@@ -184,6 +184,25 @@ def formulas(model: Model, device: Device) -> Iterator[Finding]:
                 )
 
 
+def assignments(model: Model, device: Device) -> Iterator[Finding]:
+    """Rule connector-pins: the assignment of a connector names each of its contacts once."""
+    for table in device.tables:
+        if table.assignment is None:
+            continue
+        printed = sorted(str(pin) for pin, _ in table.assignment.signals)
+        contacts = sorted(str(contact.number) for contact in table.assignment.connector.contacts)
+        if printed != contacts:
+            yield Finding(
+                rule="connector-pins",
+                subject=f"table:{table.id}",
+                place="contacts",
+                printed=", ".join(printed),
+                expected=", ".join(contacts),
+                message=f"the contacts of the table are not those of the {table.assignment.connector.name}",
+                where=table.where,
+            )
+
+
 def switches(model: Model, device: Device) -> Iterator[Finding]:
     """Rules switch-row, switch-distinct and reference: weights give the printed value, no position stands twice."""
     for group in device.switches:

@@ -41,6 +41,19 @@ _PLACEHOLDER = re.compile(r"\{([a-z]+)(\+1)?\}")
 _BRACES = re.compile(r"\{[^}]*\}?|\}")
 
 
+def unique(root: Node, key: str) -> list[Node]:
+    """The entries below a key; an id that stands twice is noted."""
+    seen: dict[str, Node] = {}
+    for node in root.items(key):
+        name = str(node.get("id"))
+        if name in seen:
+            node.problems.add(
+                "duplicate", node.at("id"), f"'{name}' is written twice", other=("first", seen[name].at("id"))
+            )
+        seen.setdefault(name, node)
+    return list(seen.values())
+
+
 def fill(text: str, node: Node, key: str, values: Mapping[str, int | str]) -> str:
     """``text`` with its placeholders filled; an unknown one is noted at the value of ``key``."""
     if "{" not in text and "}" not in text:

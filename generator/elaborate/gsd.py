@@ -3,8 +3,7 @@
 from collections.abc import Iterator, Mapping, Sequence
 
 from generator.diagnostics import suggestion
-from generator.elaborate.common import fill, origin
-from generator.elaborate.indicators import unique
+from generator.elaborate.common import fill, origin, unique
 from generator.load import Map
 from generator.model import Drive, Gsd
 from generator.model.gsd import (

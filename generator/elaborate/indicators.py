@@ -1,7 +1,10 @@
 """LEDs, DIP switches, tables and formulas."""
 
+from collections.abc import Sequence
+
+from generator.diagnostics import suggestion
 from generator.elaborate.codes import ErrataIndex
-from generator.elaborate.common import origin
+from generator.elaborate.common import origin, unique
 from generator.model import (
     CodeCounts,
     CodeRef,
@@ -19,6 +22,7 @@ from generator.model import (
     Table,
 )
 from generator.model.indicator import Light
+from generator.model.table import Assignment, Connector
 from generator.notation import formula, pattern, references, value_range
 from generator.tree import Node
 
@@ -26,19 +30,6 @@ from generator.tree import Node
 def indicators(root: Node, errata: ErrataIndex) -> tuple[IndicatorTable, ...]:
     """LED tables of a device's indicators.yaml."""
     return tuple(_indicator(node, errata) for node in unique(root, "tables"))
-
-
-def unique(root: Node, key: str) -> list[Node]:
-    """The entries below a key; an id that stands twice is noted."""
-    seen: dict[str, Node] = {}
-    for node in root.items(key):
-        name = str(node.get("id"))
-        if name in seen:
-            node.problems.add(
-                "duplicate", node.at("id"), f"'{name}' is written twice", other=("first", seen[name].at("id"))
-            )
-        seen.setdefault(name, node)
-    return list(seen.values())
 
 
 def _indicator(node: Node, errata: ErrataIndex) -> IndicatorTable:
@@ -145,12 +136,12 @@ def _code_counts(node: Node | None, switches: int) -> CodeCounts | None:
     return CodeCounts(positions, _codes(node, "code"), node.cite())
 
 
-def tables(root: Node, errata: ErrataIndex) -> tuple[Table, ...]:
-    """Tables of a device's tables.yaml."""
-    return tuple(_table(node, errata) for node in unique(root, "tables"))
+def tables(root: Node, errata: ErrataIndex, connectors: Sequence[Connector]) -> tuple[Table, ...]:
+    """Tables of a device's tables.yaml; ``connectors`` are those that standards define."""
+    return tuple(_table(node, errata, connectors) for node in unique(root, "tables"))
 
 
-def _table(node: Node, errata: ErrataIndex) -> Table:
+def _table(node: Node, errata: ErrataIndex, connectors: Sequence[Connector]) -> Table:
     columns = tuple(Column(str(c.get("id")), str(c.get("name")), str(c.get("unit", ""))) for c in node.items("columns"))
     rows = node.get("rows", ())
     for position, row in enumerate(rows):
@@ -161,18 +152,36 @@ def _table(node: Node, errata: ErrataIndex) -> Table:
                 f"row {position + 1} has {len(row)} cells for {len(columns)} columns",
                 hint="give every column a cell, '-' for an empty one",
             )
+    wiring = node.child("connector")
     return Table(
         id=str(node.get("id")),
         kind=str(node.get("kind")),
         name=str(node.get("name")),
         columns=columns,
         rows=tuple(tuple(row) for row in rows),
+        assignment=_assignment(wiring, [column.id for column in columns], rows, connectors) if wiring else None,
         notes=tuple(text.strip() for text in node.texts("notes")),
         origin=origin(node),
         cite=node.cite(),
         errata=errata.of(f"table:{node.get('id')}"),
         where=node.at("id"),
     )
+
+
+def _assignment(
+    node: Node, columns: Sequence[str], rows: Sequence[Sequence[int | str]], connectors: Sequence[Connector]
+) -> Assignment | None:
+    known = {connector.id: connector for connector in connectors}
+    named = {"shape": list(known), "pin": columns, "signal": columns}
+    for key, legal in named.items():
+        name = str(node.get(key))
+        if name not in legal:
+            what = "connector of a standard" if key == "shape" else "column"
+            hint = suggestion(name, list(legal), f"{what}s")
+            node.problems.add("name-unknown", node.at(key), f"there is no {what} '{name}'", hint=hint)
+            return None
+    pin, signal = (columns.index(str(node.get(key))) for key in ("pin", "signal"))
+    return Assignment(known[str(node.get("shape"))], tuple((row[pin], str(row[signal])) for row in rows))
 
 
 def formulas(root: Node, errata: ErrataIndex) -> tuple[Formula, ...]:

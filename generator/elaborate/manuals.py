@@ -3,9 +3,10 @@
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
-from generator.elaborate.common import OBJECT_TYPES, known_manual, optional_text, runs
+from generator.elaborate.common import OBJECT_TYPES, known_manual, optional_text, runs, unique
 from generator.model import Chapter, CobId, Manual, ObjectRef, StandardObject, StandardSubIndex
 from generator.model.gsd import DpTelegrams
+from generator.model.table import Connector, Contact
 from generator.notation import references
 from generator.tree import Node, SourceFile
 
@@ -58,20 +59,30 @@ def manual(file: SourceFile) -> Manual:
 
 @dataclass(frozen=True, slots=True)
 class Standards:
-    """What the standards define: objects, connection set, telegrams of PROFIBUS DP."""
+    """What the standards define: objects, connection set, telegrams of PROFIBUS DP, connectors."""
 
     objects: tuple[StandardObject, ...]
     cob_ids: tuple[CobId, ...]
     telegrams: tuple[DpTelegrams, ...]
+    connectors: tuple[Connector, ...]
 
 
 def standards(files: Iterable[SourceFile], manuals: Mapping[str, Manual]) -> Standards:
     """What the files of spec/standards define together."""
+    files = list(files)
     found = [_standard(file, manuals) for file in files]
+    seen: dict[str, Connector] = {}
+    for file, one in zip(files, found, strict=True):
+        for connector in one.connectors:
+            first = seen.setdefault(connector.id, connector)
+            if first is not connector:
+                message = f"the connector '{connector.id}' is defined twice"
+                file.root.problems.add("duplicate", connector.where, message, other=("first", first.where))
     return Standards(
         tuple(entry for one in found for entry in one.objects),
         tuple(entry for one in found for entry in one.cob_ids),
         tuple(entry for one in found for entry in one.telegrams),
+        tuple(entry for one in found for entry in one.connectors),
     )
 
 
@@ -93,7 +104,21 @@ def _standard(file: SourceFile, manuals: Mapping[str, Manual]) -> Standards:
         for node in root.items("cob_ids")
     )
     telegrams = root.child("profibus_dp")
-    return Standards(objects, cob_ids, (_telegrams(telegrams),) if telegrams else ())
+    connectors = tuple(_connector(node) for node in unique(root, "connectors"))
+    return Standards(objects, cob_ids, (_telegrams(telegrams),) if telegrams else (), connectors)
+
+
+def _connector(node: Node) -> Connector:
+    return Connector(
+        id=str(node.get("id")),
+        name=str(node.get("name")),
+        seen=str(node.get("seen")),
+        form=str(node.get("form")),
+        contacts=tuple(Contact(int(number), *place) for number, place in node.get("contacts").items()),
+        outline=tuple((right, down) for right, down in node.get("outline")),
+        cite=node.cite(),
+        where=node.at("id"),
+    )
 
 
 def _telegrams(node: Node) -> DpTelegrams:

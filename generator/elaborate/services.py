@@ -5,8 +5,7 @@ from dataclasses import dataclass
 
 from generator.diagnostics import suggestion
 from generator.elaborate.codes import ErrataIndex
-from generator.elaborate.common import optional_text, origin
-from generator.elaborate.indicators import unique
+from generator.elaborate.common import optional_text, origin, unique
 from generator.load import Map, Seq
 from generator.model import (
     Choice,

@@ -4,8 +4,7 @@ from collections.abc import Mapping
 
 from generator.diagnostics import suggestion
 from generator.elaborate.codes import ErrataIndex
-from generator.elaborate.common import options, origin, runs
-from generator.elaborate.indicators import unique
+from generator.elaborate.common import options, origin, runs, unique
 from generator.model import BitField, Example, Field, FieldType, Layout, Option, Sizes, Values
 from generator.model.telegram import OPEN, Value
 from generator.tree import Node

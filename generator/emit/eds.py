@@ -27,7 +27,7 @@ from generator.emit.canopen import (
     number_text,
 )
 from generator.emit.environment import render as render_template
-from generator.model import DataType, Erratum, Model, NodeRelative, Where
+from generator.model import Cite, DataType, Erratum, Model, NodeRelative, Where
 from generator.naming import Scope
 
 _BIT_RATES = (10, 20, 50, 125, 250, 500, 800, 1000)
@@ -508,7 +508,7 @@ def _sources(dictionary: ObjectDictionary) -> Iterator[str]:
             " ".join(designations) + ("" if page is None else f" (p. {page})")
             for page, designations in sorted(pages.items(), key=lambda item: item[0] or 0)
         )
-        yield f"{manual}, {chapter}: {', '.join(places)}."
+        yield f"{Cite(manual, chapter)}: {', '.join(places)}."
 
 
 # Text

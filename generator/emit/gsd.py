@@ -286,9 +286,7 @@ class _File:
         return ", ".join(parts)
 
     def _cite(self, cite: Cite) -> str:
-        manual = "" if cite.manual == self._device.manual.id else f"{cite.manual} "
-        page = f" p. {cite.page}" if cite.page is not None else ""
-        return f"{manual}{cite.chapter}{page}"
+        return cite.place if cite.manual == self._device.manual.id else str(cite)
 
 
 def _wrapped(text: str) -> list[str]:

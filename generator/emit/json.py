@@ -53,6 +53,7 @@ from generator.model import (
     Values,
 )
 from generator.model.gsd import Diagnosis, Module, Source, Wording
+from generator.model.table import Assignment
 
 Json = Mapping[str, object]
 
@@ -399,10 +400,23 @@ def _table(table: Table) -> Json:
         "name": table.name,
         "columns": [{"id": c.id, "name": c.name, "unit": c.unit or None} for c in table.columns],
         "rows": [list(row) for row in table.rows],
+        "connector": _connector(table.assignment) if table.assignment else None,
         "notes": list(table.notes),
         "origin": table.origin.value,
         "cite": _cite(table.cite),
         "errata": list(table.errata),
+    }
+
+
+def _connector(assignment: Assignment) -> Json:
+    connector = assignment.connector
+    return {
+        "name": connector.name,
+        "seen": connector.seen,
+        "form": connector.form,
+        "contacts": [{"number": c.number, "right": c.right, "down": c.down} for c in connector.contacts],
+        "signals": {str(pin): signal for pin, signal in assignment.signals},
+        "cite": _cite(connector.cite),
     }
 
 

@@ -29,6 +29,10 @@ class Where:
     path: str = ""
 
 
+UNNAMED = "X"
+"""Chapter of a source that names none, or not on the pages that are at hand."""
+
+
 @dataclass(frozen=True, slots=True)
 class Cite:
     """Place in a manual: id of the manual, chapter as text, page as printed (``None`` where unknown)."""
@@ -36,6 +40,16 @@ class Cite:
     manual: str
     chapter: str
     page: int | None = None
+
+    @property
+    def place(self) -> str:
+        """Chapter and page as far as they are known: "13.2 p. 114", "p. 201", ""."""
+        parts = ("" if self.chapter == UNNAMED else self.chapter, "" if self.page is None else f"p. {self.page}")
+        return " ".join(part for part in parts if part)
+
+    def __str__(self) -> str:
+        """Manual and place: "EDS94AYCCA-EN-5.0, 13.2 p. 114"."""
+        return f"{self.manual}, {self.place}" if self.place else self.manual
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

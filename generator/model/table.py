@@ -15,15 +15,53 @@ class Column:
     unit: str
 
 
+@dataclass(frozen=True, slots=True)
+class Contact:
+    """A contact by its number; ``right`` and ``down`` in half the distance of two contacts."""
+
+    number: int
+    right: int
+    down: int
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Connector:
+    """A connector as a standard arranges its contacts, ``seen`` from one side.
+
+    ``form``: "pin", "hole" or "spring".  ``outline``: corners of the shell, (right, down) as of the contacts.
+    """
+
+    id: str
+    name: str
+    seen: str
+    form: str
+    contacts: tuple[Contact, ...]
+    outline: tuple[tuple[int, int], ...]
+    cite: Cite
+    where: Where
+
+
+@dataclass(frozen=True, slots=True)
+class Assignment:
+    """What the contacts of a connector carry, by number, as the table of an assignment prints it."""
+
+    connector: Connector
+    signals: tuple[tuple[int | str, str], ...]
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Table:
-    """A table as printed; ``kind`` as in ``tables.schema.yaml``; a row has one cell for each column."""
+    """A table as printed; ``kind`` as in ``tables.schema.yaml``; a row has one cell for each column.
+
+    ``assignment``: that of the connector, where its shape is known.
+    """
 
     id: str
     kind: str
     name: str
     columns: tuple[Column, ...]
     rows: tuple[tuple[int | str, ...], ...]
+    assignment: Assignment | None
     notes: tuple[str, ...]
     origin: Origin
     cite: Cite

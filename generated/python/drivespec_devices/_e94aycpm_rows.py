@@ -1769,7 +1769,7 @@ SELECTIONS: dict[str, tuple[object, ...]] = {
         ),
     ),
     "DriveModule": (
-        "Values of the module field of an error number of the Servo Drives 9400. EDS94ARNE-EN-2.3, 8.6.1.5 p. 201; EDS94AYCCA-EN-5.0, 12.1 p. 89; EDS94ARNE-EN-2.3, X p. 201.",
+        "Values of the module field of an error number of the Servo Drives 9400. EDS94ARNE-EN-2.3, 8.6.1.5 p. 201; EDS94AYCCA-EN-5.0, 12.1 p. 89; EDS94ARNE-EN-2.3, p. 201.",
         (
             (123, "CONTROL", "Control"), (140, "DEVICE_CONFIGURATION", "Device configuration"),
             (

@@ -4730,7 +4730,7 @@ class DriveResponse(Selection):
 
 class DriveModule(Selection):
     """Values of the module field of an error number of the Servo Drives 9400. EDS94ARNE-EN-2.3, 8.6.1.5 p. 201;
-    EDS94AYCCA-EN-5.0, 12.1 p. 89; EDS94ARNE-EN-2.3, X p. 201.
+    EDS94AYCCA-EN-5.0, 12.1 p. 89; EDS94ARNE-EN-2.3, p. 201.
     """
 
     CONTROL = 123  # Control

@@ -31,9 +31,8 @@ def cited(cite: Cite, origin: Origin = Origin.MANUAL) -> str:
     >>> cited(Cite("EDS94AYCCA-EN-5.0", "13.2", 114), Origin.DERIVED)
     'EDS94AYCCA-EN-5.0, 13.2 p. 114 (derived).'
     """
-    page = f" p. {cite.page}" if cite.page is not None else ""
     mark = f" ({_NOT_PRINTED[origin]})" if origin in _NOT_PRINTED else ""
-    return f"{cite.manual}, {cite.chapter}{page}{mark}."
+    return f"{cite}{mark}."
 
 
 def sentence(label: str, text: str | None) -> str:

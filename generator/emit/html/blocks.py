@@ -71,6 +71,35 @@ class Table:
 
 
 @dataclass(frozen=True, slots=True)
+class Contact:
+    """A contact of a drawn connector; ``signal`` is "" for none, ``upright`` a label that stands on its end.
+
+    ``leader``: from the shell to a label that is away from it, in the notation of SVG, "" for none.
+    """
+
+    x: str
+    y: str
+    number: str
+    signal: str
+    label_y: str
+    upright: bool
+    leader: str
+
+
+@dataclass(frozen=True, slots=True)
+class Drawing:
+    """A connector; ``box`` and ``outline`` in the notations of SVG, ``form`` as in the spec of connectors."""
+
+    title: str
+    box: str
+    width: str
+    outline: str
+    form: str
+    contacts: tuple[Contact, ...]
+    caption: Prose
+
+
+@dataclass(frozen=True, slots=True)
 class Note:
     """A ledger entry beside the fact that it concerns; ``slip`` marks those of the text dump alone."""
 
@@ -103,6 +132,7 @@ class Entry:
     lead: Prose
     facts: tuple[Fact, ...]
     tables: tuple[Table, ...]
+    drawing: Drawing | None = None
     columns: tuple[Table, ...] = ()
     lists: tuple[ItemList, ...] = ()
     bullets: tuple[Bullets, ...] = ()

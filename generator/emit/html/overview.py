@@ -3,11 +3,11 @@
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 
-from generator.emit.html.blocks import Fact, Table
+from generator.emit.html.blocks import Drawing, Fact, Table
 from generator.emit.html.downloads import Download, Offered, device_downloads
 from generator.emit.html.links import Links
 from generator.emit.html.places import named_id, page_of
-from generator.emit.html.tables import printed_table
+from generator.emit.html.tables import drawn, printed_table
 from generator.emit.html.text import Piece, Prose, joined, through
 from generator.emit.html.topics import by_topic, title_of
 from generator.emit.html.ways import (
@@ -49,6 +49,7 @@ class ShownTable:
 
     name: Piece
     source: Prose
+    drawing: Drawing | None
     table: Table
 
 
@@ -126,7 +127,7 @@ def _topic(links: Links, topic: str, tables: Sequence[PrintedTable]) -> Topic:
 
 def _shown(links: Links, table: PrintedTable) -> ShownTable:
     name = Piece(table.name, links.href(named_id("table", table.id)))
-    return ShownTable(name, links.source(table.cite), printed_table(links, table, anchored=False))
+    return ShownTable(name, links.source(table.cite), drawn(links, table), printed_table(links, table, anchored=False))
 
 
 def _facts(links: Links) -> Iterator[Fact]:

@@ -3,7 +3,7 @@
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
-from generator.emit.html.blocks import Fact, Row, Table
+from generator.emit.html.blocks import Drawing, Fact, Row, Table
 from generator.emit.html.codes import code_group
 from generator.emit.html.coverage import edition
 from generator.emit.html.errors import error_entry, kind_title
@@ -12,6 +12,7 @@ from generator.emit.html.links import Links
 from generator.emit.html.objects import object_entry
 from generator.emit.html.panel import switch_entry
 from generator.emit.html.places import code_entries, error_entries, error_id, error_text, page_of
+from generator.emit.html.tables import drawn, printed_table
 from generator.emit.html.text import NONE, Piece, Prose, hexadecimal, joined, noted, plain, through
 from generator.model import Code, Device, ErrorEntry, IndicatorTable, Model, SwitchGroup
 
@@ -37,6 +38,7 @@ class Part:
     title: str
     facts: tuple[Fact, ...]
     tables: tuple[Table, ...]
+    drawing: Drawing | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -91,10 +93,14 @@ def _css(text: str) -> str:
 
 def _parts(links: Links) -> Iterator[Part]:
     device = links.device
+    for table in device.tables:
+        if table.assignment is not None:
+            pins = printed_table(links, table, anchored=False)
+            yield Part(f"connector-{table.id}", table.name, (), (pins,), drawn(links, table))
     for group in device.switches:
         yield _switches(links, group)
-    for table in device.indicators:
-        yield _leds(links, table)
+    for lamps in device.indicators:
+        yield _leds(links, lamps)
     kinds = dict.fromkeys(error.kind for error in device.errors)
     for kind in kinds:
         errors = [error for error in device.errors if error.kind == kind]

@@ -2,17 +2,16 @@
 
 from collections.abc import Iterator, Sequence
 
-from generator.emit.html.blocks import Anchor, Bullets, Entry, Fact, Group, Row, Table
+from generator.emit.html.blocks import Anchor, Bullets, Drawing, Entry, Fact, Group, Row, Table
+from generator.emit.html.connectors import drawing
 from generator.emit.html.links import Links
 from generator.emit.html.notes import named_subject, notes
 from generator.emit.html.places import named_id
-from generator.emit.html.text import NONE, Piece, Prose, shown_origin
+from generator.emit.html.text import NONE, NOTHING_PRINTED, Piece, Prose, shown_origin
 from generator.emit.html.topics import by_topic, title_of
 from generator.model import Column, Formula
 from generator.model import Table as PrintedTable
 
-_NOTHING_PRINTED = "-"
-"""Cell of a table in which the manual prints a dash or nothing."""
 _OVERVIEW = ("Table", "Name", "Of", "Rows")
 _FORMULAS = ("Formula", "Name", "Expression")
 
@@ -44,10 +43,16 @@ def table_entry(links: Links, table: PrintedTable) -> Entry:
         marks=(origin,) if origin else (),
         lead="",
         facts=(Fact("Table of", _kind(table)), Fact("Source", links.source(table.cite))),
+        drawing=drawn(links, table),
         tables=(printed_table(links, table),),
         bullets=(remarks,) if remarks.items else (),
         notes=notes(links, [named_subject(table.errata)]),
     )
+
+
+def drawn(links: Links, table: PrintedTable) -> Drawing | None:
+    """The connector that the table assigns, ``None`` where no standard knows its shape."""
+    return drawing(links, table.assignment) if table.assignment else None
 
 
 def printed_table(links: Links, table: PrintedTable, anchored: bool = True) -> Table:
@@ -66,7 +71,7 @@ def _heading(column: Column) -> str:
 def _cell(links: Links, cell: int | str) -> Prose:
     if isinstance(cell, int):
         return str(cell)
-    return NONE if cell == _NOTHING_PRINTED else links.prose(cell)
+    return NONE if cell == NOTHING_PRINTED else links.prose(cell)
 
 
 def formula_group(links: Links, formulas: Sequence[Formula]) -> Group:

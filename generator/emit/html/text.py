@@ -6,10 +6,14 @@ from dataclasses import dataclass
 from fractions import Fraction
 
 from generator.model import DataType, Default, NodeRelative, Origin, Range
+from generator.model.citation import UNNAMED
 from generator.model.telegram import OPEN
 
 NONE = "\N{EN DASH}"
 """Stands where the manual says nothing."""
+
+NOTHING_PRINTED = "-"
+"""Cell of a table in which the manual prints a dash or nothing."""
 
 ELLIPSIS = "\N{HORIZONTAL ELLIPSIS}"
 """Stands between the ends of a run or range."""
@@ -157,8 +161,8 @@ def shown_origin(origin: Origin) -> str:
 
 
 def place_of(chapter: str, page: int | None) -> str:
-    """Place in a manual, "ch. 13.2, p. 114"; ``chapter`` is "" where only the page is known."""
-    parts = (f"ch. {chapter}" if chapter else "", f"p. {page}" if page is not None else "")
+    """Place in a manual, "ch. 13.2, p. 114"; ``chapter`` is "" or ``UNNAMED`` where only the page is known."""
+    parts = (f"ch. {chapter}" if chapter not in ("", UNNAMED) else "", f"p. {page}" if page is not None else "")
     return ", ".join(part for part in parts if part)
 
 

@@ -10,7 +10,7 @@ from generator.emit.python.example import sessions
 from generator.emit.python.panels import panel_tables
 from generator.emit.python.rows import code_row, device_row, dict_table, erratum_row, error_row, object_row, tuple_table
 from generator.emit.python.telegrams import Telegrams
-from generator.emit.python.text import cite_text, doc, fill, index_text, literal, manual_text
+from generator.emit.python.text import doc, fill, index_text, literal, manual_text
 from generator.emit.python.views import ConstantView, DeviceView, ExampleView, GroupView
 from generator.model import Device, ErrorEntry, Model
 from generator.naming import Scope, snake
@@ -104,7 +104,7 @@ class DeviceBuilder:
             number=code.number,
             name=repr(code.name),
             address=repr((code.index, 0)),
-            cite=repr(cite_text(code.cite)),
+            cite=repr(str(code.cite)),
             enum=enum.name,
             value=values[0],
             member=f"<{enum.name}.{enum.members[0].name}: {values[0]} {code.options[0].label!r}>",
@@ -124,7 +124,7 @@ class DeviceBuilder:
         drive = self._device.drive
         if drive is not None:
             rule = f"The index of a code of the {drive.title} is this number minus that of the code."
-            cites = "; ".join(map(cite_text, drive.index_base_cites))
+            cites = "; ".join(map(str, drive.index_base_cites))
             yield ConstantView("INDEX_BASE", str(drive.index_base), doc(f"{rule} {cites}."))
         for code in self._device.codes:
             self._numbers.add(code.designation, code.where)

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
 
-from generator.emit.python.text import access_text, cite_text, default_text, doc, range_text, refs_text
+from generator.emit.python.text import access_text, default_text, doc, range_text, refs_text
 from generator.model import Code, Device, DictionaryObject, ErrorEntry, SubIndex
 
 
@@ -34,7 +34,7 @@ class Documentation:
             f"{code.name}{slot}: {', '.join(facts)}.",
             code.description,
             *self._errata(code.errata, variables, _index_show),
-            f"{cite_text(code.cite)}.",
+            f"{code.cite!s}.",
         )
 
     def object(self, entry: DictionaryObject) -> tuple[str, ...]:
@@ -44,7 +44,7 @@ class Documentation:
             f"{entry.name}: {entry.object_type}.",
             entry.description,
             *self._errata(entry.errata, variables, "0x{:X}".format),
-            f"{cite_text(entry.cite)}.",
+            f"{entry.cite!s}.",
         )
 
     def subindex(self, entry: DictionaryObject, sub: SubIndex) -> tuple[str, ...]:
@@ -66,7 +66,7 @@ class Documentation:
             sub.description,
             f"Mirrors {refs_text(sub.codes)}." if sub.codes else "",
             *self._errata(sub.errata, variables, "0x{:X}".format),
-            f"{cite_text(entry.cite)}.",
+            f"{entry.cite!s}.",
         )
 
     def error(self, error: ErrorEntry) -> tuple[str, ...]:
@@ -79,7 +79,7 @@ class Documentation:
             f"{error.name}{run}{response}{codes}.",
             error.description,
             *self._errata(error.errata, variables, "0x{:08X}".format),
-            f"{cite_text(error.cite)}.",
+            f"{error.cite!s}.",
         )
 
     def _errata(self, ids: Iterable[str], variables: Mapping[str, int], show: Callable[[int], str]) -> Iterator[str]:

@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 from typing import TypeVar
 
 from generator.emit import names
-from generator.emit.python.text import cite_text, doc, fill, literal
+from generator.emit.python.text import doc, fill, literal
 from generator.emit.python.views import EnumView, MemberView, RowView
 from generator.model import (
     Bit,
@@ -66,7 +66,7 @@ class Enums:
             ("DriveCommand", "Device commands", drive.commands),
         )
         for name, title, entries in lists:
-            cites = "; ".join(dict.fromkeys(cite_text(entry.cite) for entry in entries))
+            cites = "; ".join(dict.fromkeys(str(entry.cite) for entry in entries))
             options = tuple(Option(entry.value, entry.name) for entry in entries)
             self.selection(EnumFact((name,), name, f"{title} of the {drive.title}. {cites}.", drive.where), options)
 
@@ -95,20 +95,20 @@ class Enums:
 
 def code_fact(code: Code) -> EnumFact:
     """A code; the one of the first slot names the enum."""
-    title = f"{code.name} ({code.designation}). {cite_text(code.cite)}."
+    title = f"{code.name} ({code.designation}). {code.cite!s}."
     return EnumFact(("code", code.twin_of), pascal(names.code_name(code)), title, code.where)
 
 
 def subcode_fact(code: Code, sub: SubCode) -> EnumFact:
     """A subcode that has values of its own."""
-    title = f"{code.name}: {sub.name} ({code.designation}/{sub.number}). {cite_text(code.cite)}."
+    title = f"{code.name}: {sub.name} ({code.designation}/{sub.number}). {code.cite!s}."
     name = f"{pascal(code.designation)}Sub{sub.number}{pascal(sub.name)}"
     return EnumFact(("code", code.twin_of), name, title, sub.where)
 
 
 def subindex_fact(entry: DictionaryObject, sub: SubIndex) -> EnumFact:
     """A sub-index."""
-    title = f"{sub.name} ({entry.designation}/{sub.number}). {cite_text(entry.cite)}."
+    title = f"{sub.name} ({entry.designation}/{sub.number}). {entry.cite!s}."
     name = pascal(names.object_name(entry))
     if len(entry.subindexes) > 1:
         name = f"{pascal(entry.designation.replace('-', ''))}Sub{sub.number}{pascal(sub.name)}"
@@ -117,7 +117,7 @@ def subindex_fact(entry: DictionaryObject, sub: SubIndex) -> EnumFact:
 
 def telegram_fact(layout: Layout, owner: str, field: Field, path: str) -> EnumFact:
     """A field of a telegram, or the part of one that ``path`` names; layouts that list the same share an enum."""
-    title = f"{field.title}: {path} ({layout.name}). {cite_text(layout.cite)}."
+    title = f"{field.title}: {path} ({layout.name}). {layout.cite!s}."
     return EnumFact(("telegram", path), f"{owner}{pascal(path)}", title, field.where)
 
 

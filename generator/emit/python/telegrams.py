@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from generator.emit import names
 from generator.emit.base import EmitError
 from generator.emit.python.enums import Enums, telegram_fact
-from generator.emit.python.text import cite_text, doc, fill, literal, wrap
+from generator.emit.python.text import doc, fill, literal, wrap
 from generator.emit.python.views import (
     FieldView,
     PartView,
@@ -64,7 +64,7 @@ class Telegrams:
     def _layout(self, layout: Layout) -> Iterator[TelegramClassView]:
         name = self._scope.add(class_name(layout), layout.where)
         errata = f"Errata: {', '.join(layout.errata)}." if layout.errata else ""
-        text = doc(f"{layout.name} ({layout.protocol}).", layout.description, errata, f"{cite_text(layout.cite)}.")
+        text = doc(f"{layout.name} ({layout.protocol}).", layout.description, errata, f"{layout.cite!s}.")
         yield from self._class(name, layout.fields, layout, text, is_telegram=True)
 
     def _class(

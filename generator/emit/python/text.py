@@ -4,7 +4,7 @@ from collections.abc import Iterable, Sequence
 from decimal import Decimal
 from fractions import Fraction
 
-from generator.model import Access, Cite, CodeRef, DataType, Default, DictionaryObject, Manual, NodeRelative, Range
+from generator.model import Access, CodeRef, DataType, Default, DictionaryObject, Manual, NodeRelative, Range
 
 WIDTH = 118
 """Longest line that is filled."""
@@ -63,11 +63,6 @@ def doc(*paragraphs: str) -> tuple[str, ...]:
 def manual_text(manual: Manual) -> str:
     """Title and edition."""
     return f"{manual.title}, edition {manual.edition}"
-
-
-def cite_text(cite: Cite) -> str:
-    """Manual, chapter and page: "EDS94AYCCA-EN-5.0, 13.2 p. 114"."""
-    return f"{cite.manual}, {cite.chapter}" + ("" if cite.page is None else f" p. {cite.page}")
 
 
 def index_text(entry: DictionaryObject) -> str:

@@ -173,8 +173,7 @@ def _joined(parts: Sequence[str]) -> str:
 
 
 def _cite(cite: Cite) -> str:
-    page = f" p. {cite.page}" if cite.page is not None else ""
-    return markdown(f"{cite.manual}, {cite.chapter}{page}")
+    return markdown(str(cite))
 
 
 def _code_refs(refs: Sequence[CodeRef]) -> str:

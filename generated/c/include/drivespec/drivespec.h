@@ -142,20 +142,20 @@ typedef enum servo_drives_9400_module {
     SERVO_DRIVES_9400_MODULE_CONTROL = 123, ///< Control; EDS94ARNE-EN-2.3, 8.6.1.5 p. 201 (from another public document).
     SERVO_DRIVES_9400_MODULE_DEVICE_CONFIGURATION = 140, ///< Device configuration; EDS94AYCCA-EN-5.0, 12.1 p. 89 (derived).
     SERVO_DRIVES_9400_MODULE_157_CAN_MODULE_IN_MXI1_BUS_OFF_NODE = 157, ///< CAN module in MXI1: bus-off, node address, basic configuration; EDS94AYCCA-EN-5.0, 12.1 p. 89 (derived).
-    SERVO_DRIVES_9400_MODULE_CAN_MODULE_IN_MXI1_CAN_NMT_HANDLER = 158, ///< CAN module in MXI1: CAN-NMT handler; EDS94ARNE-EN-2.3, X p. 201 (derived).
-    SERVO_DRIVES_9400_MODULE_159_CAN_MODULE_IN_MXI1_CAN_EMERGENCY = 159, ///< CAN module in MXI1: CAN emergency handler; EDS94ARNE-EN-2.3, X p. 201 (derived).
-    SERVO_DRIVES_9400_MODULE_CAN_MODULE_IN_MXI1_CAN_NMT_MASTER = 160, ///< CAN module in MXI1: CAN-NMT master; EDS94ARNE-EN-2.3, X p. 201 (derived).
-    SERVO_DRIVES_9400_MODULE_CAN_MODULE_IN_MXI1_CAN_PDO_HANDLER = 161, ///< CAN module in MXI1: CAN-PDO handler; EDS94ARNE-EN-2.3, X p. 201 (derived).
-    SERVO_DRIVES_9400_MODULE_CAN_MODULE_IN_MXI1_CAN_SDO_SERVER = 162, ///< CAN module in MXI1: CAN-SDO server; EDS94ARNE-EN-2.3, X p. 201 (derived).
-    SERVO_DRIVES_9400_MODULE_CAN_MODULE_IN_MXI1_CAN_SDO_CLIENT = 163, ///< CAN module in MXI1: CAN-SDO client; EDS94ARNE-EN-2.3, X p. 201 (derived).
+    SERVO_DRIVES_9400_MODULE_CAN_MODULE_IN_MXI1_CAN_NMT_HANDLER = 158, ///< CAN module in MXI1: CAN-NMT handler; EDS94ARNE-EN-2.3, p. 201 (derived).
+    SERVO_DRIVES_9400_MODULE_159_CAN_MODULE_IN_MXI1_CAN_EMERGENCY = 159, ///< CAN module in MXI1: CAN emergency handler; EDS94ARNE-EN-2.3, p. 201 (derived).
+    SERVO_DRIVES_9400_MODULE_CAN_MODULE_IN_MXI1_CAN_NMT_MASTER = 160, ///< CAN module in MXI1: CAN-NMT master; EDS94ARNE-EN-2.3, p. 201 (derived).
+    SERVO_DRIVES_9400_MODULE_CAN_MODULE_IN_MXI1_CAN_PDO_HANDLER = 161, ///< CAN module in MXI1: CAN-PDO handler; EDS94ARNE-EN-2.3, p. 201 (derived).
+    SERVO_DRIVES_9400_MODULE_CAN_MODULE_IN_MXI1_CAN_SDO_SERVER = 162, ///< CAN module in MXI1: CAN-SDO server; EDS94ARNE-EN-2.3, p. 201 (derived).
+    SERVO_DRIVES_9400_MODULE_CAN_MODULE_IN_MXI1_CAN_SDO_CLIENT = 163, ///< CAN module in MXI1: CAN-SDO client; EDS94ARNE-EN-2.3, p. 201 (derived).
     SERVO_DRIVES_9400_MODULE_172_CAN_MODULE_IN_MXI2_BUS_OFF_NODE = 172, ///< CAN module in MXI2: bus-off, node address, basic configuration; EDS94AYCCA-EN-5.0, 12.1 p. 89 (derived).
-    SERVO_DRIVES_9400_MODULE_CAN_MODULE_IN_MXI2_CAN_NMT_HANDLER = 173, ///< CAN module in MXI2: CAN-NMT handler; EDS94ARNE-EN-2.3, X p. 201 (from another public document).
-    SERVO_DRIVES_9400_MODULE_174_CAN_MODULE_IN_MXI2_CAN_EMERGENCY = 174, ///< CAN module in MXI2: CAN emergency handler; EDS94ARNE-EN-2.3, X p. 201 (from another public document).
-    SERVO_DRIVES_9400_MODULE_CAN_MODULE_IN_MXI2_CAN_NMT_MASTER = 175, ///< CAN module in MXI2: CAN-NMT master; EDS94ARNE-EN-2.3, X p. 201 (from another public document).
-    SERVO_DRIVES_9400_MODULE_CAN_MODULE_IN_MXI2_CAN_PDO_HANDLER = 176, ///< CAN module in MXI2: CAN-PDO handler; EDS94ARNE-EN-2.3, X p. 201 (from another public document).
-    SERVO_DRIVES_9400_MODULE_CAN_MODULE_IN_MXI2_CAN_SDO_SERVER = 177, ///< CAN module in MXI2: CAN-SDO server; EDS94ARNE-EN-2.3, X p. 201 (from another public document).
-    SERVO_DRIVES_9400_MODULE_CAN_MODULE_IN_MXI2_CAN_SDO_CLIENT = 178, ///< CAN module in MXI2: CAN-SDO client; EDS94ARNE-EN-2.3, X p. 201 (from another public document).
-    SERVO_DRIVES_9400_MODULE_INTELLIGENT_COMMUNICATION_MODULE = 200 ///< Intelligent communication module; EDS94ARNE-EN-2.3, X p. 201 (from another public document).
+    SERVO_DRIVES_9400_MODULE_CAN_MODULE_IN_MXI2_CAN_NMT_HANDLER = 173, ///< CAN module in MXI2: CAN-NMT handler; EDS94ARNE-EN-2.3, p. 201 (from another public document).
+    SERVO_DRIVES_9400_MODULE_174_CAN_MODULE_IN_MXI2_CAN_EMERGENCY = 174, ///< CAN module in MXI2: CAN emergency handler; EDS94ARNE-EN-2.3, p. 201 (from another public document).
+    SERVO_DRIVES_9400_MODULE_CAN_MODULE_IN_MXI2_CAN_NMT_MASTER = 175, ///< CAN module in MXI2: CAN-NMT master; EDS94ARNE-EN-2.3, p. 201 (from another public document).
+    SERVO_DRIVES_9400_MODULE_CAN_MODULE_IN_MXI2_CAN_PDO_HANDLER = 176, ///< CAN module in MXI2: CAN-PDO handler; EDS94ARNE-EN-2.3, p. 201 (from another public document).
+    SERVO_DRIVES_9400_MODULE_CAN_MODULE_IN_MXI2_CAN_SDO_SERVER = 177, ///< CAN module in MXI2: CAN-SDO server; EDS94ARNE-EN-2.3, p. 201 (from another public document).
+    SERVO_DRIVES_9400_MODULE_CAN_MODULE_IN_MXI2_CAN_SDO_CLIENT = 178, ///< CAN module in MXI2: CAN-SDO client; EDS94ARNE-EN-2.3, p. 201 (from another public document).
+    SERVO_DRIVES_9400_MODULE_INTELLIGENT_COMMUNICATION_MODULE = 200 ///< Intelligent communication module; EDS94ARNE-EN-2.3, p. 201 (from another public document).
 } servo_drives_9400_module;
 /** @} */
 

@@ -66,27 +66,27 @@ selection! {
         CanModuleInMxi1BusOffNodeAddressBasicConfiguration = 157, "CAN module in MXI1: bus-off, node address, basic configuration";
         /// 158: CAN module in MXI1: CAN-NMT handler.
         ///
-        /// - Source: EDS94ARNE-EN-2.3, X p. 201, derived
+        /// - Source: EDS94ARNE-EN-2.3, p. 201, derived
         CanModuleInMxi1CanNmtHandler = 158, "CAN module in MXI1: CAN-NMT handler";
         /// 159: CAN module in MXI1: CAN emergency handler.
         ///
-        /// - Source: EDS94ARNE-EN-2.3, X p. 201, derived
+        /// - Source: EDS94ARNE-EN-2.3, p. 201, derived
         CanModuleInMxi1CanEmergencyHandler = 159, "CAN module in MXI1: CAN emergency handler";
         /// 160: CAN module in MXI1: CAN-NMT master.
         ///
-        /// - Source: EDS94ARNE-EN-2.3, X p. 201, derived
+        /// - Source: EDS94ARNE-EN-2.3, p. 201, derived
         CanModuleInMxi1CanNmtMaster = 160, "CAN module in MXI1: CAN-NMT master";
         /// 161: CAN module in MXI1: CAN-PDO handler.
         ///
-        /// - Source: EDS94ARNE-EN-2.3, X p. 201, derived
+        /// - Source: EDS94ARNE-EN-2.3, p. 201, derived
         CanModuleInMxi1CanPdoHandler = 161, "CAN module in MXI1: CAN-PDO handler";
         /// 162: CAN module in MXI1: CAN-SDO server.
         ///
-        /// - Source: EDS94ARNE-EN-2.3, X p. 201, derived
+        /// - Source: EDS94ARNE-EN-2.3, p. 201, derived
         CanModuleInMxi1CanSdoServer = 162, "CAN module in MXI1: CAN-SDO server";
         /// 163: CAN module in MXI1: CAN-SDO client.
         ///
-        /// - Source: EDS94ARNE-EN-2.3, X p. 201, derived
+        /// - Source: EDS94ARNE-EN-2.3, p. 201, derived
         CanModuleInMxi1CanSdoClient = 163, "CAN module in MXI1: CAN-SDO client";
         /// 172: CAN module in MXI2: bus-off, node address, basic configuration.
         ///
@@ -94,31 +94,31 @@ selection! {
         CanModuleInMxi2BusOffNodeAddressBasicConfiguration = 172, "CAN module in MXI2: bus-off, node address, basic configuration";
         /// 173: CAN module in MXI2: CAN-NMT handler.
         ///
-        /// - Source: EDS94ARNE-EN-2.3, X p. 201, public document
+        /// - Source: EDS94ARNE-EN-2.3, p. 201, public document
         CanModuleInMxi2CanNmtHandler = 173, "CAN module in MXI2: CAN-NMT handler";
         /// 174: CAN module in MXI2: CAN emergency handler.
         ///
-        /// - Source: EDS94ARNE-EN-2.3, X p. 201, public document
+        /// - Source: EDS94ARNE-EN-2.3, p. 201, public document
         CanModuleInMxi2CanEmergencyHandler = 174, "CAN module in MXI2: CAN emergency handler";
         /// 175: CAN module in MXI2: CAN-NMT master.
         ///
-        /// - Source: EDS94ARNE-EN-2.3, X p. 201, public document
+        /// - Source: EDS94ARNE-EN-2.3, p. 201, public document
         CanModuleInMxi2CanNmtMaster = 175, "CAN module in MXI2: CAN-NMT master";
         /// 176: CAN module in MXI2: CAN-PDO handler.
         ///
-        /// - Source: EDS94ARNE-EN-2.3, X p. 201, public document
+        /// - Source: EDS94ARNE-EN-2.3, p. 201, public document
         CanModuleInMxi2CanPdoHandler = 176, "CAN module in MXI2: CAN-PDO handler";
         /// 177: CAN module in MXI2: CAN-SDO server.
         ///
-        /// - Source: EDS94ARNE-EN-2.3, X p. 201, public document
+        /// - Source: EDS94ARNE-EN-2.3, p. 201, public document
         CanModuleInMxi2CanSdoServer = 177, "CAN module in MXI2: CAN-SDO server";
         /// 178: CAN module in MXI2: CAN-SDO client.
         ///
-        /// - Source: EDS94ARNE-EN-2.3, X p. 201, public document
+        /// - Source: EDS94ARNE-EN-2.3, p. 201, public document
         CanModuleInMxi2CanSdoClient = 178, "CAN module in MXI2: CAN-SDO client";
         /// 200: Intelligent communication module.
         ///
-        /// - Source: EDS94ARNE-EN-2.3, X p. 201, public document
+        /// - Source: EDS94ARNE-EN-2.3, p. 201, public document
         IntelligentCommunicationModule = 200, "Intelligent communication module";
     }
 }
