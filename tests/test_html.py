@@ -55,6 +55,7 @@ from generator.model import (
     SwitchRow,
     Values,
 )
+from generator.model.citation import UNNAMED
 from generator.model.gsd import Keyword
 from generator.model.table import Table as PrintedTable
 
@@ -232,8 +233,9 @@ def bits(shown: dict[str, str]) -> dict[int, str]:
 
 
 def cite_text(fact: Any) -> str:
+    chapter = f", ch. {fact.chapter}" if fact.chapter != "X" else ""
     page = f", p. {fact.page}" if fact.page is not None else ""
-    return f"{fact.manual}, ch. {fact.chapter}{page}"
+    return f"{fact.manual}{chapter}{page}"
 
 
 @pytest.fixture(scope="module")
@@ -1512,7 +1514,7 @@ KEPT = {
 def poisoned(value: Any, owner: type = object, name: str = "") -> Any:
     """A model whose every text ends in characters that HTML escapes; words that code compares are kept."""
     if isinstance(value, str):
-        kept = value in ("", "none") or value.startswith("device:") or name in KEPT.get(owner, ())
+        kept = value in ("", "none", UNNAMED) or value.startswith("device:") or name in KEPT.get(owner, ())
         return value if kept else value + POISON
     if callable(value) and owner is Erratum:
         return lambda variables: poisoned(value(variables), owner, name)
