@@ -141,7 +141,7 @@ def adjustable_codes(model: Model, device: Device) -> Iterator[Finding]:
         for place, refs, where in error.printed_adjustable_in:
             if refs != error.named_in:
                 expected = ", ".join(str(r) for r in error.named_in)
-                message = f"{place} names {', '.join(str(r) for r in refs)}, not {expected}"
+                message = f"{place} names {', '.join(map(str, refs)) or 'none'}, not {expected}"
                 yield _adjustable("error-adjustable", error, place, refs, message, where)
 
 
@@ -153,7 +153,7 @@ def _adjustable(
         rule=rule,
         subject=error.ref,
         place=place,
-        printed=", ".join(str(r) for r in refs),
+        printed=", ".join(str(r) for r in refs) or "none",
         expected=expected,
         message=f"{error.ref}: {message}",
         where=where,

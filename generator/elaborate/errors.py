@@ -7,6 +7,7 @@ from generator.diagnostics import suggestion
 from generator.elaborate.codes import BASE, ErrataIndex
 from generator.elaborate.common import fill, optional_text, origin
 from generator.model import Cite, CodeRef, Drive, ErrorEntry, ErrorRef, PrintedNumber, Slot, Where
+from generator.model.table import NOTHING_PRINTED
 from generator.notation import numbers, references
 from generator.tree import Node
 
@@ -140,4 +141,5 @@ def _names(printed: Node, place: str) -> Iterator[tuple[str, str, Where]]:
 def _printed_codes(printed: Node, place: str) -> Iterator[tuple[str, tuple[CodeRef, ...], Where]]:
     for key, where in (("adjustable_in", "overview"), ("detail_adjustable_in", "detail")):
         if key in printed:
-            yield f"{where} {place}", _codes(printed, key, None), printed.at(key)
+            none = printed.get(key) == NOTHING_PRINTED
+            yield f"{where} {place}", () if none else _codes(printed, key, None), printed.at(key)

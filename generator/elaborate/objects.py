@@ -121,6 +121,7 @@ def _subindex(
     printed_access = str(node.get("access"))
     norm = known.subindex(ref.subindex) if known else None
     overview, detail = _codes(node, "codes", values), _codes(node, "detail_codes", values)
+    mirrors = _codes(node, "mirrors", values) if "mirrors" in node else overview
     value = node.get("default")
     if isinstance(value, list):
         value = value[place] if _fits(node, "default", value, count) else None
@@ -136,7 +137,7 @@ def _subindex(
         options=options(node, "selection"),
         bits=bits(node),
         fields=fields(node),
-        codes=tuple(dict.fromkeys(twin for ref in overview for twin in twins(ref, frame.slots))),
+        codes=tuple(dict.fromkeys(twin for ref in mirrors for twin in twins(ref, frame.slots))),
         printed_codes=(("overview", overview), ("detail", detail)) if detail else (("overview", overview),),
         signature=node.get("signature"),
         pdo_mapping=bool(node.get("pdo_mapping", norm.pdo_mapping if norm else False)),

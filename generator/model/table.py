@@ -5,6 +5,9 @@ from dataclasses import dataclass
 
 from generator.model.citation import Cite, Origin, Where
 
+NOTHING_PRINTED = "-"
+"""Where the manual prints a dash or nothing."""
+
 
 @dataclass(frozen=True, slots=True)
 class Column:

@@ -41,7 +41,7 @@ CODES: dict[int, tuple[object, ...]] = {
             (3, 3, "Resp. to imperm. module in MXI2", (1, None, None, "")), (4, 5, "Reserved", (0, None, None, "")),
         ),
         (), None, False, "Response to a module that the device configuration does not permit, for each slot.",
-        "servo-drives-9400", "manual", ("EDS94AYCCA-EN-5.0", "13.1", 102), ("module-error-not-adjustable",),
+        "servo-drives-9400", "manual", ("EDS94AYCCA-EN-5.0", "13.1", 102), (),
     ),
     636: (
         "Resp. to new module in MXI1", None, 636, 23939, "UNSIGNED_32", "UNSIGNED32", None, (True, True, ()), 1, None,
@@ -345,7 +345,8 @@ CODES: dict[int, tuple[object, ...]] = {
             ),
             (2, 10, "SDO server channel {n} remote client node address", (1, None, None, "")),
         ),
-        (), None, False, "Node address of the client that belongs to each SDO server.", None, "manual",
+        ((4609, 3), (4610, 3), (4611, 3), (4612, 3), (4613, 3), (4614, 3), (4615, 3), (4616, 3), (4617, 3)), None,
+        False, "Node address of the client that belongs to each SDO server.", None, "manual",
         ("EDS94AYCCA-EN-5.0", "13.2", 118),
         ("table-of-attributes-index", "sdo-client-address-range", "codes-not-named"),
     ),
@@ -453,8 +454,12 @@ CODES: dict[int, tuple[object, ...]] = {
     13394: (
         "CAN predefined error field (DS301V402)", "MXI1", 13394, 11181, "UNSIGNED_32", "UNSIGNED32", None,
         (True, False, ()), 1, (0, 4294967295, ""), None, None, None, None, (), ((1, 10, "", (None, None, None, "")),),
-        (), None, False, "Predefined error field of DS301, V4.02.", None, "manual",
-        ("EDS94AYCCA-EN-5.0", "13.2", 124), ("table-of-attributes-index", "c13394-index", "codes-not-named"),
+        (
+            (4099, 1), (4099, 2), (4099, 3), (4099, 4), (4099, 5), (4099, 6), (4099, 7), (4099, 8), (4099, 9),
+            (4099, 10),
+        ),
+        None, False, "Predefined error field of DS301, V4.02.", None, "manual", ("EDS94AYCCA-EN-5.0", "13.2", 124),
+        ("table-of-attributes-index", "c13394-index", "codes-not-named"),
     ),
     13591: (
         "Resp. to CAN-RPDOx error", "MXI1", 13591, 10984, "UNSIGNED_8", "UNSIGNED8", None, (True, True, ()), 1, None,
@@ -771,7 +776,8 @@ CODES: dict[int, tuple[object, ...]] = {
             ),
             (2, 10, "SDO server channel {n} remote client node address", (1, None, None, "")),
         ),
-        (), None, False, "Node address of the client that belongs to each SDO server.", None, "manual",
+        ((4609, 3), (4610, 3), (4611, 3), (4612, 3), (4613, 3), (4614, 3), (4615, 3), (4616, 3), (4617, 3)), None,
+        False, "Node address of the client that belongs to each SDO server.", None, "manual",
         ("EDS94AYCCA-EN-5.0", "13.3", 139),
         ("table-of-attributes-index", "chapter-13-3-index", "sdo-client-address-range", "codes-not-named"),
     ),
@@ -884,8 +890,12 @@ CODES: dict[int, tuple[object, ...]] = {
     14394: (
         "CAN predefined error field (DS301V402)", "MXI2", 13394, 10181, "UNSIGNED_32", "UNSIGNED32", None,
         (True, False, ()), 1, (0, 4294967295, ""), None, None, None, None, (), ((1, 10, "", (None, None, None, "")),),
-        (), None, False, "Predefined error field of DS301, V4.02.", None, "manual",
-        ("EDS94AYCCA-EN-5.0", "13.3", 145), ("table-of-attributes-index", "c14394-index", "codes-not-named"),
+        (
+            (4099, 1), (4099, 2), (4099, 3), (4099, 4), (4099, 5), (4099, 6), (4099, 7), (4099, 8), (4099, 9),
+            (4099, 10),
+        ),
+        None, False, "Predefined error field of DS301, V4.02.", None, "manual", ("EDS94AYCCA-EN-5.0", "13.3", 145),
+        ("table-of-attributes-index", "c14394-index", "codes-not-named"),
     ),
     14591: (
         "Resp. to CAN-RPDOx error", "MXI2", 13591, 9984, "UNSIGNED_8", "UNSIGNED8", None, (True, True, ()), 1, None,
@@ -976,10 +986,83 @@ OBJECTS: dict[int, tuple[object, ...]] = {
                 ),
             ),
             (
-                1, 10, "Standard error field",
+                1, 1, "Standard error field",
                 (
-                    "UNSIGNED32", "ro", "UNSIGNED32", "ro", None, (0, 4294967295, ""), None, None, (), (), None,
-                    False, False, None, "A 16-bit error code together with 16 bits of the manufacturer's own.", (),
+                    "UNSIGNED32", "ro", "UNSIGNED32", "ro", None, (0, 4294967295, ""), None, None, (),
+                    ((13394, 1), (14394, 1)), None, False, False, None,
+                    "A 16-bit error code together with 16 bits of the manufacturer's own.", (),
+                ),
+            ),
+            (
+                2, 2, "Standard error field",
+                (
+                    "UNSIGNED32", "ro", "UNSIGNED32", "ro", None, (0, 4294967295, ""), None, None, (),
+                    ((13394, 2), (14394, 2)), None, False, False, None,
+                    "A 16-bit error code together with 16 bits of the manufacturer's own.", (),
+                ),
+            ),
+            (
+                3, 3, "Standard error field",
+                (
+                    "UNSIGNED32", "ro", "UNSIGNED32", "ro", None, (0, 4294967295, ""), None, None, (),
+                    ((13394, 3), (14394, 3)), None, False, False, None,
+                    "A 16-bit error code together with 16 bits of the manufacturer's own.", (),
+                ),
+            ),
+            (
+                4, 4, "Standard error field",
+                (
+                    "UNSIGNED32", "ro", "UNSIGNED32", "ro", None, (0, 4294967295, ""), None, None, (),
+                    ((13394, 4), (14394, 4)), None, False, False, None,
+                    "A 16-bit error code together with 16 bits of the manufacturer's own.", (),
+                ),
+            ),
+            (
+                5, 5, "Standard error field",
+                (
+                    "UNSIGNED32", "ro", "UNSIGNED32", "ro", None, (0, 4294967295, ""), None, None, (),
+                    ((13394, 5), (14394, 5)), None, False, False, None,
+                    "A 16-bit error code together with 16 bits of the manufacturer's own.", (),
+                ),
+            ),
+            (
+                6, 6, "Standard error field",
+                (
+                    "UNSIGNED32", "ro", "UNSIGNED32", "ro", None, (0, 4294967295, ""), None, None, (),
+                    ((13394, 6), (14394, 6)), None, False, False, None,
+                    "A 16-bit error code together with 16 bits of the manufacturer's own.", (),
+                ),
+            ),
+            (
+                7, 7, "Standard error field",
+                (
+                    "UNSIGNED32", "ro", "UNSIGNED32", "ro", None, (0, 4294967295, ""), None, None, (),
+                    ((13394, 7), (14394, 7)), None, False, False, None,
+                    "A 16-bit error code together with 16 bits of the manufacturer's own.", (),
+                ),
+            ),
+            (
+                8, 8, "Standard error field",
+                (
+                    "UNSIGNED32", "ro", "UNSIGNED32", "ro", None, (0, 4294967295, ""), None, None, (),
+                    ((13394, 8), (14394, 8)), None, False, False, None,
+                    "A 16-bit error code together with 16 bits of the manufacturer's own.", (),
+                ),
+            ),
+            (
+                9, 9, "Standard error field",
+                (
+                    "UNSIGNED32", "ro", "UNSIGNED32", "ro", None, (0, 4294967295, ""), None, None, (),
+                    ((13394, 9), (14394, 9)), None, False, False, None,
+                    "A 16-bit error code together with 16 bits of the manufacturer's own.", (),
+                ),
+            ),
+            (
+                10, 10, "Standard error field",
+                (
+                    "UNSIGNED32", "ro", "UNSIGNED32", "ro", None, (0, 4294967295, ""), None, None, (),
+                    ((13394, 10), (14394, 10)), None, False, False, None,
+                    "A 16-bit error code together with 16 bits of the manufacturer's own.", (),
                 ),
             ),
         ),
@@ -1013,8 +1096,8 @@ OBJECTS: dict[int, tuple[object, ...]] = {
             (
                 0, 0, "Communication cycle period",
                 (
-                    "UNSIGNED32", "rw", "UNSIGNED32", "rw", 0, (0, 65535000, "μs"), None, None, (), ((369, None),),
-                    None, False, False, None, "", (),
+                    "UNSIGNED32", "rw", "UNSIGNED32", "rw", 0, (0, 65535000, "μs"), None, None, (), ((369, 2),), None,
+                    False, False, None, "", (),
                 ),
             ),
         ),
@@ -1415,8 +1498,8 @@ OBJECTS: dict[int, tuple[object, ...]] = {
             (
                 0, 0, "highest subindex supported",
                 (
-                    "UNSIGNED8", "ro", "UNSIGNED32", "ro", None, None, None, None, (), (), None, False, False, None,
-                    "", ("sub-0-width", "i-1018-see-below"),
+                    "UNSIGNED8", "ro", "UNSIGNED32", "ro", 4, None, None, None, (), (), None, False, False, None, "",
+                    ("sub-0-width", "i-1018-see-below"),
                 ),
             ),
             (
@@ -1527,8 +1610,8 @@ OBJECTS: dict[int, tuple[object, ...]] = {
             (
                 3, 3, "Node-ID of the SDO client",
                 (
-                    "UNSIGNED8", "rw", "UNSIGNED32", "ro", None, (1, 127, ""), None, None, (), (), None, False, False,
-                    None, "Node address of the client. The range is printed in the column of defaults.",
+                    "UNSIGNED8", "rw", "UNSIGNED32", "ro", 1, (1, 127, ""), None, None, (), ((13374, 2), (14374, 2)),
+                    None, False, False, None, "Node address of the client.",
                     ("sdo-client-type", "sdo-client-access", "codes-not-named", "sdo-client-default"),
                 ),
             ),
@@ -1565,8 +1648,8 @@ OBJECTS: dict[int, tuple[object, ...]] = {
             (
                 3, 3, "Node-ID of the SDO client",
                 (
-                    "UNSIGNED8", "rw", "UNSIGNED32", "ro", None, (1, 127, ""), None, None, (), (), None, False, False,
-                    None, "Node address of the client. The range is printed in the column of defaults.",
+                    "UNSIGNED8", "rw", "UNSIGNED32", "ro", 1, (1, 127, ""), None, None, (), ((13374, 3), (14374, 3)),
+                    None, False, False, None, "Node address of the client.",
                     ("sdo-client-type", "sdo-client-access", "codes-not-named", "sdo-client-default"),
                 ),
             ),
@@ -1603,8 +1686,8 @@ OBJECTS: dict[int, tuple[object, ...]] = {
             (
                 3, 3, "Node-ID of the SDO client",
                 (
-                    "UNSIGNED8", "rw", "UNSIGNED32", "ro", None, (1, 127, ""), None, None, (), (), None, False, False,
-                    None, "Node address of the client. The range is printed in the column of defaults.",
+                    "UNSIGNED8", "rw", "UNSIGNED32", "ro", 1, (1, 127, ""), None, None, (), ((13374, 4), (14374, 4)),
+                    None, False, False, None, "Node address of the client.",
                     ("sdo-client-type", "sdo-client-access", "codes-not-named", "sdo-client-default"),
                 ),
             ),
@@ -1641,8 +1724,8 @@ OBJECTS: dict[int, tuple[object, ...]] = {
             (
                 3, 3, "Node-ID of the SDO client",
                 (
-                    "UNSIGNED8", "rw", "UNSIGNED32", "ro", None, (1, 127, ""), None, None, (), (), None, False, False,
-                    None, "Node address of the client. The range is printed in the column of defaults.",
+                    "UNSIGNED8", "rw", "UNSIGNED32", "ro", 1, (1, 127, ""), None, None, (), ((13374, 5), (14374, 5)),
+                    None, False, False, None, "Node address of the client.",
                     ("sdo-client-type", "sdo-client-access", "codes-not-named", "sdo-client-default"),
                 ),
             ),
@@ -1679,8 +1762,8 @@ OBJECTS: dict[int, tuple[object, ...]] = {
             (
                 3, 3, "Node-ID of the SDO client",
                 (
-                    "UNSIGNED8", "rw", "UNSIGNED32", "ro", None, (1, 127, ""), None, None, (), (), None, False, False,
-                    None, "Node address of the client. The range is printed in the column of defaults.",
+                    "UNSIGNED8", "rw", "UNSIGNED32", "ro", 1, (1, 127, ""), None, None, (), ((13374, 6), (14374, 6)),
+                    None, False, False, None, "Node address of the client.",
                     ("sdo-client-type", "sdo-client-access", "codes-not-named", "sdo-client-default"),
                 ),
             ),
@@ -1717,8 +1800,8 @@ OBJECTS: dict[int, tuple[object, ...]] = {
             (
                 3, 3, "Node-ID of the SDO client",
                 (
-                    "UNSIGNED8", "rw", "UNSIGNED32", "ro", None, (1, 127, ""), None, None, (), (), None, False, False,
-                    None, "Node address of the client. The range is printed in the column of defaults.",
+                    "UNSIGNED8", "rw", "UNSIGNED32", "ro", 1, (1, 127, ""), None, None, (), ((13374, 7), (14374, 7)),
+                    None, False, False, None, "Node address of the client.",
                     ("sdo-client-type", "sdo-client-access", "codes-not-named", "sdo-client-default"),
                 ),
             ),
@@ -1755,8 +1838,8 @@ OBJECTS: dict[int, tuple[object, ...]] = {
             (
                 3, 3, "Node-ID of the SDO client",
                 (
-                    "UNSIGNED8", "rw", "UNSIGNED32", "ro", None, (1, 127, ""), None, None, (), (), None, False, False,
-                    None, "Node address of the client. The range is printed in the column of defaults.",
+                    "UNSIGNED8", "rw", "UNSIGNED32", "ro", 1, (1, 127, ""), None, None, (), ((13374, 8), (14374, 8)),
+                    None, False, False, None, "Node address of the client.",
                     ("sdo-client-type", "sdo-client-access", "codes-not-named", "sdo-client-default"),
                 ),
             ),
@@ -1793,8 +1876,8 @@ OBJECTS: dict[int, tuple[object, ...]] = {
             (
                 3, 3, "Node-ID of the SDO client",
                 (
-                    "UNSIGNED8", "rw", "UNSIGNED32", "ro", None, (1, 127, ""), None, None, (), (), None, False, False,
-                    None, "Node address of the client. The range is printed in the column of defaults.",
+                    "UNSIGNED8", "rw", "UNSIGNED32", "ro", 1, (1, 127, ""), None, None, (), ((13374, 9), (14374, 9)),
+                    None, False, False, None, "Node address of the client.",
                     ("sdo-client-type", "sdo-client-access", "codes-not-named", "sdo-client-default"),
                 ),
             ),
@@ -1831,8 +1914,8 @@ OBJECTS: dict[int, tuple[object, ...]] = {
             (
                 3, 3, "Node-ID of the SDO client",
                 (
-                    "UNSIGNED8", "rw", "UNSIGNED32", "ro", None, (1, 127, ""), None, None, (), (), None, False, False,
-                    None, "Node address of the client. The range is printed in the column of defaults.",
+                    "UNSIGNED8", "rw", "UNSIGNED32", "ro", 1, (1, 127, ""), None, None, (),
+                    ((13374, 10), (14374, 10)), None, False, False, None, "Node address of the client.",
                     ("sdo-client-type", "sdo-client-access", "codes-not-named", "sdo-client-default"),
                 ),
             ),
@@ -2427,14 +2510,14 @@ OBJECTS: dict[int, tuple[object, ...]] = {
 
 ERRORS: tuple[tuple[object, ...], ...] = (
     (
-        "device", 9175063, 9175063, None, "MXI1: CAN module is missing or is incompatible", "Fault", ("Fault",), (),
-        None, ("The application does not support the CANopen module in slot MXI1.",),
+        "device", 9175063, 9175063, None, "MXI1: CAN module is missing or is incompatible", "Fault", ("Fault",),
+        ((615, 2),), None, ("The application does not support the CANopen module in slot MXI1.",),
         ("Use a communication module that the application supports.",), "", "manual",
         ("EDS94AYCCA-EN-5.0", "12.2", 91), ("module-error-not-adjustable", "module-missing-cause"),
     ),
     (
-        "device", 9175064, 9175064, None, "MXI2: CAN module is missing or is incompatible", "Fault", ("Fault",), (),
-        None, ("The application does not support the CANopen module in slot MXI2.",),
+        "device", 9175064, 9175064, None, "MXI2: CAN module is missing or is incompatible", "Fault", ("Fault",),
+        ((615, 3),), None, ("The application does not support the CANopen module in slot MXI2.",),
         ("Use a communication module that the application supports.",), "", "manual",
         ("EDS94AYCCA-EN-5.0", "12.2", 91), ("module-error-not-adjustable", "module-missing-cause"),
     ),
@@ -2480,15 +2563,18 @@ ERRORS: tuple[tuple[object, ...], ...] = (
             (13613, 25), (13613, 26), (13613, 27), (13613, 28), (13613, 29), (13613, 30), (13613, 31), (13613, 32),
         ),
         None,
-        ("One of the nodes 1 ... 32 sent no heartbeat telegram to the module in this slot within the time set.",),
+        (
+            "The node of the monitoring entry sent no heartbeat telegram to the module in this slot within the time set.",
+        ),
         (
             "Reactivate the CAN node: switch the mains off and on, restart the controller (C00002 = 11000) or reset the node (C00002 = 92).",
-            "Set the monitoring time for the heartbeat producer anew or switch the monitoring off.",
+            "Set the heartbeat consumer time of the entry anew (C13385 / C14385) or switch the monitoring off.",
             "Reset the error status if it is still active.",
             "Save the parameter set (C00002 = 11) before you switch the mains or restart the controller.",
         ),
-        "Cyclic node monitoring; the run holds one number for each of the indices 1 ... 32.", "manual",
-        ("EDS94AYCCA-EN-5.0", "12.2", 92), ("error-runs-overview", "monitoring-entry-node", "heartbeat-remedy"),
+        "Cyclic node monitoring; one number for each of the monitoring entries 1 ... 32 of C13385 / C14385, which hold the addresses of the nodes.",
+        "manual", ("EDS94AYCCA-EN-5.0", "12.2", 92),
+        ("error-runs-overview", "monitoring-entry-node", "heartbeat-remedy"),
     ),
     (
         "device", 10354720, 10354720, "MXI1", "CAN module (MXI1): life guarding error", "No response",
@@ -2534,16 +2620,16 @@ ERRORS: tuple[tuple[object, ...], ...] = (
         ),
         None,
         (
-            "One of the nodes 1 ... 32 did not answer a node guarding telegram (RTR) of the master in this slot within the time set.",
+            "The node of the monitoring entry did not answer a node guarding telegram (RTR) of the master in this slot within the time set.",
         ),
         (
             "Reactivate the CAN node: switch the mains off and on, restart the controller (C00002 = 11000) or reset the node (C00002 = 92).",
-            "Set the node guarding time anew or switch the monitoring off.",
+            "Set the guard time of the entry anew (C13386 / C14386) or switch the monitoring off.",
             "Reset the error status if it is still active.",
             "Save the parameter set (C00002 = 11) before you switch the mains or restart the controller.",
         ),
-        "Cyclic node monitoring; the run holds one number for each of the nodes 1 ... 32.", "manual",
-        ("EDS94AYCCA-EN-5.0", "12.2", 93), ("error-runs-overview", "monitoring-entry-node"),
+        "Cyclic node monitoring; one number for each of the monitoring entries 1 ... 32 of C13386 / C14386, which hold the addresses of the nodes.",
+        "manual", ("EDS94AYCCA-EN-5.0", "12.2", 93), ("error-runs-overview", "monitoring-entry-node"),
     ),
     (
         "device", 10485792, 10485792, "MXI1", "CAN module (MXI1): NMT master configuration incomplete",
@@ -2765,15 +2851,17 @@ ERRORS: tuple[tuple[object, ...], ...] = (
             (14613, 25), (14613, 26), (14613, 27), (14613, 28), (14613, 29), (14613, 30), (14613, 31), (14613, 32),
         ),
         None,
-        ("One of the nodes 1 ... 32 sent no heartbeat telegram to the module in this slot within the time set.",),
+        (
+            "The node of the monitoring entry sent no heartbeat telegram to the module in this slot within the time set.",
+        ),
         (
             "Reactivate the CAN node: switch the mains off and on, restart the controller (C00002 = 11000) or reset the node (C00002 = 92).",
-            "Set the monitoring time for the heartbeat producer anew or switch the monitoring off.",
+            "Set the heartbeat consumer time of the entry anew (C13385 / C14385) or switch the monitoring off.",
             "Reset the error status if it is still active.",
             "Save the parameter set (C00002 = 11) before you switch the mains or restart the controller.",
         ),
-        "Cyclic node monitoring; the run holds one number for each of the indices 1 ... 32.", "manual",
-        ("EDS94AYCCA-EN-5.0", "12.2", 97), ("dump-mx12", "monitoring-entry-node", "heartbeat-remedy"),
+        "Cyclic node monitoring; one number for each of the monitoring entries 1 ... 32 of C13385 / C14385, which hold the addresses of the nodes.",
+        "manual", ("EDS94AYCCA-EN-5.0", "12.2", 97), ("dump-mx12", "monitoring-entry-node", "heartbeat-remedy"),
     ),
     (
         "device", 11337760, 11337760, "MXI2", "CAN module (MXI2): life guarding error", "No response",
@@ -2819,16 +2907,16 @@ ERRORS: tuple[tuple[object, ...], ...] = (
         ),
         None,
         (
-            "One of the nodes 1 ... 32 did not answer a node guarding telegram (RTR) of the master in this slot within the time set.",
+            "The node of the monitoring entry did not answer a node guarding telegram (RTR) of the master in this slot within the time set.",
         ),
         (
             "Reactivate the CAN node: switch the mains off and on, restart the controller (C00002 = 11000) or reset the node (C00002 = 92).",
-            "Set the node guarding time anew or switch the monitoring off.",
+            "Set the guard time of the entry anew (C13386 / C14386) or switch the monitoring off.",
             "Reset the error status if it is still active.",
             "Save the parameter set (C00002 = 11) before you switch the mains or restart the controller.",
         ),
-        "Cyclic node monitoring; the run holds one number for each of the nodes 1 ... 32.", "manual",
-        ("EDS94AYCCA-EN-5.0", "12.2", 98), ("monitoring-entry-node",),
+        "Cyclic node monitoring; one number for each of the monitoring entries 1 ... 32 of C13386 / C14386, which hold the addresses of the nodes.",
+        "manual", ("EDS94AYCCA-EN-5.0", "12.2", 98), ("monitoring-entry-node",),
     ),
     (
         "device", 11468832, 11468832, "MXI2", "CAN module (MXI2): NMT master configuration incomplete",
@@ -3794,14 +3882,9 @@ ERRATA: tuple[tuple[object, ...], ...] = (
         'The drive has no response "Message", and "Warning locked" is missing in chapter 14.', "high", "manual",
     ),
     (
-        "module-error-not-adjustable", "inconsistency", ("E-0x008c0017", "E-0x008c0018", "C00615"), (), "",
-        "C00615/2 (MXI1) and C00615/3 (MXI2)",
-        (
-            ("12.1, both numbers", 89, "EDS94AYCCA-EN-5.0", "Can be set in: -"),
-            ("12.2, both numbers", 91, "EDS94AYCCA-EN-5.0", "Setting: not possible"),
-            ("13.1, C00615/2 and /3", 102, "EDS94AYCCA-EN-5.0", "1: Fault; Resp. to imperm. module in MXI1, in MXI2"),
-        ),
-        "The code sets the response to a module that is not permitted, and its Lenze setting is the response of the list.",
+        "module-error-not-adjustable", "inconsistency", ("E-0x008c0017", "E-0x008c0018"), (), "none", "C00615/...",
+        (),
+        "Overview and description let the response not be set. C00615/2 and C00615/3 (13.1, p. 102) set that to a module which the device configuration does not permit, in each slot, and their Lenze setting is the response of the list.",
         "medium", "manual",
     ),
     (
@@ -4059,7 +4142,7 @@ ERRATA: tuple[tuple[object, ...], ...] = (
             ("13.2, C13322, text", 110, "EDS94AYCCA-EN-5.0", "types 0, 1-240, 254, 255 are supported"),
             ("8.2, table", 47, "EDS94AYCCA-EN-5.0", "0; 1 ... 240; 254, 255"),
         ),
-        "The range includes 241 ... 253, which the text leaves out; in CiA 301 they are reserved or need a remote request.",
+        "The range includes 241 ... 253, which the text leaves out; in CiA 301 they are reserved or need a remote request. Codes and objects keep the range printed.",
         "high", "manual",
     ),
     (
@@ -4124,8 +4207,8 @@ ERRATA: tuple[tuple[object, ...], ...] = (
             ("14, I-1003, subindexes", 156, "EDS94AYCCA-EN-5.0", "1 ... 10"),
             ("14, I-1003, note", 156, "EDS94AYCCA-EN-5.0", 'overwritten with the value "0"'),
         ),
-        "Ten errors are kept, so that the number cannot be greater; CiA 301 permits only 0 to be written.", "medium",
-        "manual",
+        "Ten errors are kept, so that the number cannot be greater; CiA 301 permits only 0 to be written. The object keeps the range printed.",
+        "medium", "manual",
     ),
     (
         "i-1005-pdos", "text", ("I-1005",), (), "", "for the reception of sync telegrams",

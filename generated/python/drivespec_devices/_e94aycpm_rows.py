@@ -621,10 +621,10 @@ ERRORS: tuple[tuple[object, ...], ...] = (
         "device", 13119744, 13119744, None, "Profibus: Lost connection to 9400 base device", "No response", ("None",),
         (), None,
         (
-            "The network cable or its plug is damaged.", "The network cable is not plugged into X201.",
-            "The supply voltage has failed.",
+            "The supply voltage of the drive has failed.",
+            "As printed, the network cable or its plug at X201; they lead to the master, not to the drive.",
         ),
-        ("Check cables and terminals.", "Plug the network cable into X201."),
+        ("Check the supply of the drive, then cables and terminals.",),
         "The module has lost the connection to the drive.", "manual", ("EDS94AYCPM-EN-12.0", "13.2", 88),
         ("error-base-device", "c13887-bit-7", "error-connection-causes"),
     ),

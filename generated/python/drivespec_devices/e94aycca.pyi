@@ -380,9 +380,6 @@ C00615_RESP_TO_IMP_DEVICE_CONFIG: Final = 615
 """Resp. to imp. device config.: UNSIGNED_32, read and write, subcodes 1 ... 5.
 
 Response to a module that the device configuration does not permit, for each slot.
-Erratum module-error-not-adjustable: printed is "Can be set in: -" (12.1, both numbers); "Setting: not
-possible" (12.2, both numbers); "1: Fault; Resp. to imperm. module in MXI1, in MXI2" (13.1, C00615/2 and /3);
-used is "C00615/2 (MXI1) and C00615/3 (MXI2)".
 EDS94AYCCA-EN-5.0, 13.1 p. 102.
 """
 
@@ -1859,6 +1856,7 @@ I1003_1_STANDARD_ERROR_FIELD: Final = (0x1003, 1)
 """Standard error field: UNSIGNED32, ro, 0 ... 4294967295.
 
 A 16-bit error code together with 16 bits of the manufacturer's own.
+Mirrors C13394/1, C14394/1.
 EDS94AYCCA-EN-5.0, 14 p. 156.
 """
 
@@ -1866,6 +1864,7 @@ I1003_2_STANDARD_ERROR_FIELD: Final = (0x1003, 2)
 """Standard error field: UNSIGNED32, ro, 0 ... 4294967295.
 
 A 16-bit error code together with 16 bits of the manufacturer's own.
+Mirrors C13394/2, C14394/2.
 EDS94AYCCA-EN-5.0, 14 p. 156.
 """
 
@@ -1873,6 +1872,7 @@ I1003_3_STANDARD_ERROR_FIELD: Final = (0x1003, 3)
 """Standard error field: UNSIGNED32, ro, 0 ... 4294967295.
 
 A 16-bit error code together with 16 bits of the manufacturer's own.
+Mirrors C13394/3, C14394/3.
 EDS94AYCCA-EN-5.0, 14 p. 156.
 """
 
@@ -1880,6 +1880,7 @@ I1003_4_STANDARD_ERROR_FIELD: Final = (0x1003, 4)
 """Standard error field: UNSIGNED32, ro, 0 ... 4294967295.
 
 A 16-bit error code together with 16 bits of the manufacturer's own.
+Mirrors C13394/4, C14394/4.
 EDS94AYCCA-EN-5.0, 14 p. 156.
 """
 
@@ -1887,6 +1888,7 @@ I1003_5_STANDARD_ERROR_FIELD: Final = (0x1003, 5)
 """Standard error field: UNSIGNED32, ro, 0 ... 4294967295.
 
 A 16-bit error code together with 16 bits of the manufacturer's own.
+Mirrors C13394/5, C14394/5.
 EDS94AYCCA-EN-5.0, 14 p. 156.
 """
 
@@ -1894,6 +1896,7 @@ I1003_6_STANDARD_ERROR_FIELD: Final = (0x1003, 6)
 """Standard error field: UNSIGNED32, ro, 0 ... 4294967295.
 
 A 16-bit error code together with 16 bits of the manufacturer's own.
+Mirrors C13394/6, C14394/6.
 EDS94AYCCA-EN-5.0, 14 p. 156.
 """
 
@@ -1901,6 +1904,7 @@ I1003_7_STANDARD_ERROR_FIELD: Final = (0x1003, 7)
 """Standard error field: UNSIGNED32, ro, 0 ... 4294967295.
 
 A 16-bit error code together with 16 bits of the manufacturer's own.
+Mirrors C13394/7, C14394/7.
 EDS94AYCCA-EN-5.0, 14 p. 156.
 """
 
@@ -1908,6 +1912,7 @@ I1003_8_STANDARD_ERROR_FIELD: Final = (0x1003, 8)
 """Standard error field: UNSIGNED32, ro, 0 ... 4294967295.
 
 A 16-bit error code together with 16 bits of the manufacturer's own.
+Mirrors C13394/8, C14394/8.
 EDS94AYCCA-EN-5.0, 14 p. 156.
 """
 
@@ -1915,6 +1920,7 @@ I1003_9_STANDARD_ERROR_FIELD: Final = (0x1003, 9)
 """Standard error field: UNSIGNED32, ro, 0 ... 4294967295.
 
 A 16-bit error code together with 16 bits of the manufacturer's own.
+Mirrors C13394/9, C14394/9.
 EDS94AYCCA-EN-5.0, 14 p. 156.
 """
 
@@ -1922,6 +1928,7 @@ I1003_10_STANDARD_ERROR_FIELD: Final = (0x1003, 10)
 """Standard error field: UNSIGNED32, ro, 0 ... 4294967295.
 
 A 16-bit error code together with 16 bits of the manufacturer's own.
+Mirrors C13394/10, C14394/10.
 EDS94AYCCA-EN-5.0, 14 p. 156.
 """
 
@@ -1963,7 +1970,7 @@ EDS94AYCCA-EN-5.0, 14 p. 158.
 I1006_0_COMMUNICATION_CYCLE_PERIOD: Final = (0x1006, 0)
 """Communication cycle period: UNSIGNED32, rw, 0 ... 65535000 μs, default 0.
 
-Mirrors C00369.
+Mirrors C00369/2.
 EDS94AYCCA-EN-5.0, 14 p. 158.
 """
 
@@ -2366,7 +2373,7 @@ EDS94AYCCA-EN-5.0, 14 p. 163.
 """
 
 I1018_0_HIGHEST_SUBINDEX_SUPPORTED: Final = (0x1018, 0)
-"""highest subindex supported: UNSIGNED8, ro.
+"""highest subindex supported: UNSIGNED8, ro, default 4.
 
 Erratum sub-0-width: type prints "UNSIGNED32"; used is "UNSIGNED8".
 Erratum i-1018-see-below: printed is "see below" (14, I-1018/0, default); "1, 2, 3, 4" (14, I-1018, table
@@ -2490,9 +2497,10 @@ EDS94AYCCA-EN-5.0, 14 p. 165.
 """
 
 I1201_3_NODE_ID_OF_THE_SDO_CLIENT: Final = (0x1201, 3)
-"""Node-ID of the SDO client: UNSIGNED8, rw, 1 ... 127.
+"""Node-ID of the SDO client: UNSIGNED8, rw, 1 ... 127, default 1.
 
-Node address of the client. The range is printed in the column of defaults.
+Node address of the client.
+Mirrors C13374/2, C14374/2.
 Erratum sdo-client-type: type prints "UNSIGNED32"; used is "UNSIGNED8".
 Erratum sdo-client-access: access prints "ro"; used is "rw".
 Erratum codes-not-named: printed is "-" (14, overview, I-1003/1 ... 10); "Predefined error field according to
@@ -2544,9 +2552,10 @@ EDS94AYCCA-EN-5.0, 14 p. 167.
 """
 
 I1202_3_NODE_ID_OF_THE_SDO_CLIENT: Final = (0x1202, 3)
-"""Node-ID of the SDO client: UNSIGNED8, rw, 1 ... 127.
+"""Node-ID of the SDO client: UNSIGNED8, rw, 1 ... 127, default 1.
 
-Node address of the client. The range is printed in the column of defaults.
+Node address of the client.
+Mirrors C13374/3, C14374/3.
 Erratum sdo-client-type: type prints "UNSIGNED32"; used is "UNSIGNED8".
 Erratum sdo-client-access: access prints "ro"; used is "rw".
 Erratum codes-not-named: printed is "-" (14, overview, I-1003/1 ... 10); "Predefined error field according to
@@ -2598,9 +2607,10 @@ EDS94AYCCA-EN-5.0, 14 p. 167.
 """
 
 I1203_3_NODE_ID_OF_THE_SDO_CLIENT: Final = (0x1203, 3)
-"""Node-ID of the SDO client: UNSIGNED8, rw, 1 ... 127.
+"""Node-ID of the SDO client: UNSIGNED8, rw, 1 ... 127, default 1.
 
-Node address of the client. The range is printed in the column of defaults.
+Node address of the client.
+Mirrors C13374/4, C14374/4.
 Erratum sdo-client-type: type prints "UNSIGNED32"; used is "UNSIGNED8".
 Erratum sdo-client-access: access prints "ro"; used is "rw".
 Erratum codes-not-named: printed is "-" (14, overview, I-1003/1 ... 10); "Predefined error field according to
@@ -2652,9 +2662,10 @@ EDS94AYCCA-EN-5.0, 14 p. 167.
 """
 
 I1204_3_NODE_ID_OF_THE_SDO_CLIENT: Final = (0x1204, 3)
-"""Node-ID of the SDO client: UNSIGNED8, rw, 1 ... 127.
+"""Node-ID of the SDO client: UNSIGNED8, rw, 1 ... 127, default 1.
 
-Node address of the client. The range is printed in the column of defaults.
+Node address of the client.
+Mirrors C13374/5, C14374/5.
 Erratum sdo-client-type: type prints "UNSIGNED32"; used is "UNSIGNED8".
 Erratum sdo-client-access: access prints "ro"; used is "rw".
 Erratum codes-not-named: printed is "-" (14, overview, I-1003/1 ... 10); "Predefined error field according to
@@ -2706,9 +2717,10 @@ EDS94AYCCA-EN-5.0, 14 p. 167.
 """
 
 I1205_3_NODE_ID_OF_THE_SDO_CLIENT: Final = (0x1205, 3)
-"""Node-ID of the SDO client: UNSIGNED8, rw, 1 ... 127.
+"""Node-ID of the SDO client: UNSIGNED8, rw, 1 ... 127, default 1.
 
-Node address of the client. The range is printed in the column of defaults.
+Node address of the client.
+Mirrors C13374/6, C14374/6.
 Erratum sdo-client-type: type prints "UNSIGNED32"; used is "UNSIGNED8".
 Erratum sdo-client-access: access prints "ro"; used is "rw".
 Erratum codes-not-named: printed is "-" (14, overview, I-1003/1 ... 10); "Predefined error field according to
@@ -2760,9 +2772,10 @@ EDS94AYCCA-EN-5.0, 14 p. 168.
 """
 
 I1206_3_NODE_ID_OF_THE_SDO_CLIENT: Final = (0x1206, 3)
-"""Node-ID of the SDO client: UNSIGNED8, rw, 1 ... 127.
+"""Node-ID of the SDO client: UNSIGNED8, rw, 1 ... 127, default 1.
 
-Node address of the client. The range is printed in the column of defaults.
+Node address of the client.
+Mirrors C13374/7, C14374/7.
 Erratum sdo-client-type: type prints "UNSIGNED32"; used is "UNSIGNED8".
 Erratum sdo-client-access: access prints "ro"; used is "rw".
 Erratum codes-not-named: printed is "-" (14, overview, I-1003/1 ... 10); "Predefined error field according to
@@ -2814,9 +2827,10 @@ EDS94AYCCA-EN-5.0, 14 p. 168.
 """
 
 I1207_3_NODE_ID_OF_THE_SDO_CLIENT: Final = (0x1207, 3)
-"""Node-ID of the SDO client: UNSIGNED8, rw, 1 ... 127.
+"""Node-ID of the SDO client: UNSIGNED8, rw, 1 ... 127, default 1.
 
-Node address of the client. The range is printed in the column of defaults.
+Node address of the client.
+Mirrors C13374/8, C14374/8.
 Erratum sdo-client-type: type prints "UNSIGNED32"; used is "UNSIGNED8".
 Erratum sdo-client-access: access prints "ro"; used is "rw".
 Erratum codes-not-named: printed is "-" (14, overview, I-1003/1 ... 10); "Predefined error field according to
@@ -2868,9 +2882,10 @@ EDS94AYCCA-EN-5.0, 14 p. 168.
 """
 
 I1208_3_NODE_ID_OF_THE_SDO_CLIENT: Final = (0x1208, 3)
-"""Node-ID of the SDO client: UNSIGNED8, rw, 1 ... 127.
+"""Node-ID of the SDO client: UNSIGNED8, rw, 1 ... 127, default 1.
 
-Node address of the client. The range is printed in the column of defaults.
+Node address of the client.
+Mirrors C13374/9, C14374/9.
 Erratum sdo-client-type: type prints "UNSIGNED32"; used is "UNSIGNED8".
 Erratum sdo-client-access: access prints "ro"; used is "rw".
 Erratum codes-not-named: printed is "-" (14, overview, I-1003/1 ... 10); "Predefined error field according to
@@ -2922,9 +2937,10 @@ EDS94AYCCA-EN-5.0, 14 p. 168.
 """
 
 I1209_3_NODE_ID_OF_THE_SDO_CLIENT: Final = (0x1209, 3)
-"""Node-ID of the SDO client: UNSIGNED8, rw, 1 ... 127.
+"""Node-ID of the SDO client: UNSIGNED8, rw, 1 ... 127, default 1.
 
-Node address of the client. The range is printed in the column of defaults.
+Node address of the client.
+Mirrors C13374/10, C14374/10.
 Erratum sdo-client-type: type prints "UNSIGNED32"; used is "UNSIGNED8".
 Erratum sdo-client-access: access prints "ro"; used is "rw".
 Erratum codes-not-named: printed is "-" (14, overview, I-1003/1 ... 10); "Predefined error field according to
@@ -4041,22 +4057,18 @@ EDS94AYCCA-EN-5.0, 14 p. 177.
 # Errors: their numbers, of a run the first.
 
 ERROR_MXI1_CAN_MODULE_IS_MISSING_OR_IS_INCOMPATIBLE: Final = 0x008C0017
-"""MXI1: CAN module is missing or is incompatible; response: Fault.
+"""MXI1: CAN module is missing or is incompatible; response: Fault; set in C00615/2.
 
-Erratum module-error-not-adjustable: printed is "Can be set in: -" (12.1, both numbers); "Setting: not
-possible" (12.2, both numbers); "1: Fault; Resp. to imperm. module in MXI1, in MXI2" (13.1, C00615/2 and /3);
-used is "C00615/2 (MXI1) and C00615/3 (MXI2)".
+Erratum module-error-not-adjustable: the manual prints "none"; used is "C00615/...".
 Erratum module-missing-cause: printed is "CAN module is missing or is incompatible" (12.1, designation);
 "incompatible with the application" (12.2, cause); used is "missing or incompatible".
 EDS94AYCCA-EN-5.0, 12.2 p. 91.
 """
 
 ERROR_MXI2_CAN_MODULE_IS_MISSING_OR_IS_INCOMPATIBLE: Final = 0x008C0018
-"""MXI2: CAN module is missing or is incompatible; response: Fault.
+"""MXI2: CAN module is missing or is incompatible; response: Fault; set in C00615/3.
 
-Erratum module-error-not-adjustable: printed is "Can be set in: -" (12.1, both numbers); "Setting: not
-possible" (12.2, both numbers); "1: Fault; Resp. to imperm. module in MXI1, in MXI2" (13.1, C00615/2 and /3);
-used is "C00615/2 (MXI1) and C00615/3 (MXI2)".
+Erratum module-error-not-adjustable: the manual prints "none"; used is "C00615/...".
 Erratum module-missing-cause: printed is "CAN module is missing or is incompatible" (12.1, designation);
 "incompatible with the application" (12.2, cause); used is "missing or incompatible".
 EDS94AYCCA-EN-5.0, 12.2 p. 91.
@@ -4090,7 +4102,8 @@ ERROR_CAN_MODULE_MXI1_HEARTBEAT_ERROR_INDEX_1_32: Final = 0x009E0000
 """CAN module (MXI1): heartbeat error index 1 ... 32; a run to 0x009E001F; response: No response; set in
 C13613/1...32.
 
-Cyclic node monitoring; the run holds one number for each of the indices 1 ... 32.
+Cyclic node monitoring; one number for each of the monitoring entries 1 ... 32 of C13385 / C14385, which hold
+the addresses of the nodes.
 Erratum error-runs-overview: overview MXI1 last prints "none"; used is 0x009E001F (number + 31).
 Erratum monitoring-entry-node: printed is "Bit 0: Heartbeat node 1" (13.2, C13346); "Status of node 1 ... 32"
 (13.2, C13347); "Bit 0: Node guarding of node 1" (13.2, C13387); "Node guarding status of node 1 ... 32"
@@ -4131,7 +4144,8 @@ ERROR_CAN_MODULE_MXI1_NODE_GUARDING_ERROR_1_32: Final = 0x00A00000
 """CAN module (MXI1): node guarding error 1 ... 32; a run to 0x00A0001F; response: No response; set in
 C13612/1...32.
 
-Cyclic node monitoring; the run holds one number for each of the nodes 1 ... 32.
+Cyclic node monitoring; one number for each of the monitoring entries 1 ... 32 of C13386 / C14386, which hold
+the addresses of the nodes.
 Erratum error-runs-overview: overview MXI1 last prints "none"; used is 0x00A0001F (number + 31).
 Erratum monitoring-entry-node: printed is "Bit 0: Heartbeat node 1" (13.2, C13346); "Status of node 1 ... 32"
 (13.2, C13347); "Bit 0: Node guarding of node 1" (13.2, C13387); "Node guarding status of node 1 ... 32"
@@ -4294,7 +4308,8 @@ ERROR_CAN_MODULE_MXI2_HEARTBEAT_ERROR_INDEX_1_32: Final = 0x00AD0000
 """CAN module (MXI2): heartbeat error index 1 ... 32; a run to 0x00AD001F; response: No response; set in
 C14613/1...32.
 
-Cyclic node monitoring; the run holds one number for each of the indices 1 ... 32.
+Cyclic node monitoring; one number for each of the monitoring entries 1 ... 32 of C13385 / C14385, which hold
+the addresses of the nodes.
 Erratum dump-mx12: detail MXI2 prints "... (MX12)..."; used is "... (MXI2)...".
 Erratum monitoring-entry-node: printed is "Bit 0: Heartbeat node 1" (13.2, C13346); "Status of node 1 ... 32"
 (13.2, C13347); "Bit 0: Node guarding of node 1" (13.2, C13387); "Node guarding status of node 1 ... 32"
@@ -4336,7 +4351,8 @@ ERROR_CAN_MODULE_MXI2_NODE_GUARDING_ERROR_1_32: Final = 0x00AF0000
 """CAN module (MXI2): node guarding error 1 ... 32; a run to 0x00AF001F; response: No response; set in
 C14612/1...32.
 
-Cyclic node monitoring; the run holds one number for each of the nodes 1 ... 32.
+Cyclic node monitoring; one number for each of the monitoring entries 1 ... 32 of C13386 / C14386, which hold
+the addresses of the nodes.
 Erratum monitoring-entry-node: printed is "Bit 0: Heartbeat node 1" (13.2, C13346); "Status of node 1 ... 32"
 (13.2, C13347); "Bit 0: Node guarding of node 1" (13.2, C13387); "Node guarding status of node 1 ... 32"
 (13.2, C13388); "nodes 1 ... 32 to be monitored" (14, I-1016); "from node 1 ... 32" (12.2, heartbeat error);

@@ -5,9 +5,9 @@ from dataclasses import dataclass
 
 from generator.emit.html.blocks import Contact, Drawing
 from generator.emit.html.links import Links
-from generator.emit.html.text import NOTHING_PRINTED, Piece, shown_origin
+from generator.emit.html.text import Piece, shown_origin
 from generator.model import Origin
-from generator.model.table import Assignment
+from generator.model.table import NOTHING_PRINTED, Assignment
 
 _LETTER = 7.8
 """Width of a letter of the labels, for the most are capitals."""

@@ -7,10 +7,11 @@ from generator.emit.html.connectors import drawing
 from generator.emit.html.links import Links
 from generator.emit.html.notes import named_subject, notes
 from generator.emit.html.places import named_id
-from generator.emit.html.text import NONE, NOTHING_PRINTED, Piece, Prose, shown_origin
+from generator.emit.html.text import NONE, Piece, Prose, shown_origin
 from generator.emit.html.topics import by_topic, title_of
 from generator.model import Column, Formula
 from generator.model import Table as PrintedTable
+from generator.model.table import NOTHING_PRINTED
 
 _OVERVIEW = ("Table", "Name", "Of", "Rows")
 _FORMULAS = ("Formula", "Name", "Expression")

@@ -12,9 +12,6 @@ from generator.model.telegram import OPEN
 NONE = "\N{EN DASH}"
 """Stands where the manual says nothing."""
 
-NOTHING_PRINTED = "-"
-"""Cell of a table in which the manual prints a dash or nothing."""
-
 ELLIPSIS = "\N{HORIZONTAL ELLIPSIS}"
 """Stands between the ends of a run or range."""
 

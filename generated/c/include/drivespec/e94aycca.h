@@ -79,9 +79,6 @@
  * Subcodes: 1: Reserved; 2: Resp. to imperm. module in MXI1; 3: Resp. to imperm. module in MXI2; 4 ... 5: Reserved.
  * Full name: c00615_resp_to_imp_device_config.
  * EDS94AYCCA-EN-5.0, 13.1 p. 102.
- * Erratum module-error-not-adjustable: printed: Can be set in: - (12.1, both numbers p. 89), Setting: not possible
- * (12.2, both numbers p. 91), 1: Fault; Resp. to imperm. module in MXI1, in MXI2 (13.1, C00615/2 and /3 p. 102); used:
- * C00615/2 (MXI1) and C00615/3 (MXI2).
  * @{
  */
 #define E94AYCCA_C00615_NUMBER 615u ///< C00615
@@ -1261,7 +1258,8 @@ typedef enum e94aycca_c13359_opt {
  * Subcodes: 1 ... 10: SDO server channel 1 remote client node address ... SDO server channel 10 remote client node
  * address.
  * 1: Basic SDO channel, for which DS301 has no such entry; a write is ignored. The value of subindex 1 is given as 0.
- * Full name: c13374_can_sdo_client_node_address. Slot: MXI1.
+ * Full name: c13374_can_sdo_client_node_address. Slot: MXI1. Objects: I-1201/3, I-1202/3, I-1203/3, I-1204/3,
+ * I-1205/3, I-1206/3, I-1207/3, I-1208/3, I-1209/3.
  * EDS94AYCCA-EN-5.0, 13.2 p. 118.
  * Erratum table-of-attributes-index: printed (table): 24201 (24575 - code mod 1000); used: 11201 (24575 - code).
  * Erratum sdo-client-address-range: printed: 1 ... 127 (13.2, C13374 p. 118), 1 (13.2, C13374/1, Lenze setting p.
@@ -1778,7 +1776,8 @@ typedef enum e94aycca_c13388_opt {
 /**
  * @name C13394 CAN predefined error field (DS301V402)
  * Predefined error field of DS301, V4.02.
- * Full name: c13394_can_predefined_error_field_ds301v402. Slot: MXI1.
+ * Full name: c13394_can_predefined_error_field_ds301v402. Slot: MXI1. Objects: I-1003/1, I-1003/2, I-1003/3, I-1003/4,
+ * I-1003/5, I-1003/6, I-1003/7, I-1003/8, I-1003/9, I-1003/10.
  * EDS94AYCCA-EN-5.0, 13.2 p. 124.
  * Erratum table-of-attributes-index: printed (table): 24181 (24575 - code mod 1000); used: 11181 (24575 - code).
  * Erratum c13394-index: printed (chapter MXI1): 24181; used: 11181.
@@ -2928,7 +2927,8 @@ typedef enum e94aycca_c14359_opt {
  * Subcodes: 1 ... 10: SDO server channel 1 remote client node address ... SDO server channel 10 remote client node
  * address.
  * 1: Basic SDO channel, for which DS301 has no such entry; a write is ignored. The value of subindex 1 is given as 0.
- * Full name: c14374_can_sdo_client_node_address. Slot: MXI2.
+ * Full name: c14374_can_sdo_client_node_address. Slot: MXI2. Objects: I-1201/3, I-1202/3, I-1203/3, I-1204/3,
+ * I-1205/3, I-1206/3, I-1207/3, I-1208/3, I-1209/3.
  * EDS94AYCCA-EN-5.0, 13.3 p. 139.
  * Erratum table-of-attributes-index: printed (table): 24201 (24575 - code mod 1000); used: 10201 (24575 - code).
  * Erratum chapter-13-3-index: printed (chapter MXI2): 11201 (25575 - code); used: 10201 (24575 - code).
@@ -3461,7 +3461,8 @@ typedef enum e94aycca_c14388_opt {
 /**
  * @name C14394 CAN predefined error field (DS301V402)
  * Predefined error field of DS301, V4.02.
- * Full name: c14394_can_predefined_error_field_ds301v402. Slot: MXI2.
+ * Full name: c14394_can_predefined_error_field_ds301v402. Slot: MXI2. Objects: I-1003/1, I-1003/2, I-1003/3, I-1003/4,
+ * I-1003/5, I-1003/6, I-1003/7, I-1003/8, I-1003/9, I-1003/10.
  * EDS94AYCCA-EN-5.0, 13.3 p. 145.
  * Erratum table-of-attributes-index: printed (table): 24181 (24575 - code mod 1000); used: 10181 (24575 - code).
  * Erratum c14394-index: printed (chapter MXI2): 24181; used: 10181.
@@ -3744,6 +3745,7 @@ typedef enum e94aycca_c14625_opt {
  * 0: Number of errors in the list; write 0 to clear it.; 1 ... 10: A 16-bit error code together with 16 bits of the
  * manufacturer's own.
  * Full name: i1003_pre_defined_error_field. ARRAY.
+ * Codes: C13394/1...10, C14394/1...10.
  * EDS94AYCCA-EN-5.0, 14 p. 156.
  * Erratum emergency-0x1000-responses: printed: Fault, Trouble, Quick stop by trouble, Warning, Warning locked, System
  * fault (10.3 p. 84), Trouble, Message, Warning, Fault, Quick stop by trouble, System fault (14, I-1003 p. 156); used:
@@ -3815,7 +3817,7 @@ typedef enum e94aycca_c14625_opt {
  * Cycle in which SYNC telegrams are sent, 1000 or a whole multiple of it. None are sent with 0.
  * Sub-indexes: 0: Communication cycle period.
  * Full name: i1006_communication_cycle_period. VAR.
- * Codes: C00369.
+ * Codes: C00369/2.
  * EDS94AYCCA-EN-5.0, 14 p. 158.
  * Erratum i-1006-subcode: printed: C00369 (14, overview p. 153), C00369 (14, I-1006 p. 158), C00369/1 ... C00369/3
  * (13.1, C00369 p. 101); used: C00369/2.
@@ -4083,6 +4085,7 @@ typedef enum e94aycca_c14625_opt {
 #define E94AYCCA_I1018_SUB0_TYPE DRIVESPEC_TYPE_UNSIGNED8 ///< printed: UNSIGNED32
 #define E94AYCCA_I1018_SUB0_SIZE_BYTES 1u ///< bytes on the bus
 #define E94AYCCA_I1018_SUB0_ACCESS DRIVESPEC_ACCESS_READ ///< printed: ro
+#define E94AYCCA_I1018_SUB0_DEFAULT 4u ///< default
 #define E94AYCCA_I1018_SUB1_TYPE DRIVESPEC_TYPE_UNSIGNED32 ///< printed: UNSIGNED32
 #define E94AYCCA_I1018_SUB1_SIZE_BYTES 4u ///< bytes on the bus
 #define E94AYCCA_I1018_SUB1_ACCESS DRIVESPEC_ACCESS_READ ///< printed: ro
@@ -4189,9 +4192,9 @@ typedef enum e94aycca_i1029_sub1_opt {
  * directions. Set bit 31, write the new identifier, then clear bit 31.
  * Sub-indexes: 0: highest subindex supported; 1: COB-ID client -> server (Rx); 2: COB-ID server -> client (Tx); 3:
  * Node-ID of the SDO client.
- * 3: Node address of the client. The range is printed in the column of defaults.
+ * 3: Node address of the client.
  * Full name: i1201_sdo2_server_parameter. RECORD.
- * Codes: C13372/2, C13373/2, C14372/2, C14373/2.
+ * Codes: C13372/2, C13373/2, C13374/2, C14372/2, C14373/2, C14374/2.
  * EDS94AYCCA-EN-5.0, 14 p. 165.
  * Erratum sdo-client-type: printed (type): UNSIGNED32; used: UNSIGNED8.
  * Erratum sdo-client-access: printed (access): ro; used: rw.
@@ -4235,6 +4238,7 @@ typedef enum e94aycca_i1029_sub1_opt {
 #define E94AYCCA_I1201_SUB3_ACCESS (DRIVESPEC_ACCESS_READ | DRIVESPEC_ACCESS_WRITE) ///< printed: ro
 #define E94AYCCA_I1201_SUB3_MIN 1u ///< least wire value
 #define E94AYCCA_I1201_SUB3_MAX 127u ///< largest wire value
+#define E94AYCCA_I1201_SUB3_DEFAULT 1u ///< default
 /** @} */
 
 /**
@@ -4243,9 +4247,9 @@ typedef enum e94aycca_i1029_sub1_opt {
  * directions. Set bit 31, write the new identifier, then clear bit 31.
  * Sub-indexes: 0: highest subindex supported; 1: COB-ID client -> server (Rx); 2: COB-ID server -> client (Tx); 3:
  * Node-ID of the SDO client.
- * 3: Node address of the client. The range is printed in the column of defaults.
+ * 3: Node address of the client.
  * Full name: i1202_sdo3_server_parameter. RECORD.
- * Codes: C13372/3, C13373/3, C14372/3, C14373/3.
+ * Codes: C13372/3, C13373/3, C13374/3, C14372/3, C14373/3, C14374/3.
  * EDS94AYCCA-EN-5.0, 14 p. 167.
  * Erratum sdo-client-type: printed (type): UNSIGNED32; used: UNSIGNED8.
  * Erratum sdo-client-access: printed (access): ro; used: rw.
@@ -4289,6 +4293,7 @@ typedef enum e94aycca_i1029_sub1_opt {
 #define E94AYCCA_I1202_SUB3_ACCESS (DRIVESPEC_ACCESS_READ | DRIVESPEC_ACCESS_WRITE) ///< printed: ro
 #define E94AYCCA_I1202_SUB3_MIN 1u ///< least wire value
 #define E94AYCCA_I1202_SUB3_MAX 127u ///< largest wire value
+#define E94AYCCA_I1202_SUB3_DEFAULT 1u ///< default
 /** @} */
 
 /**
@@ -4297,9 +4302,9 @@ typedef enum e94aycca_i1029_sub1_opt {
  * directions. Set bit 31, write the new identifier, then clear bit 31.
  * Sub-indexes: 0: highest subindex supported; 1: COB-ID client -> server (Rx); 2: COB-ID server -> client (Tx); 3:
  * Node-ID of the SDO client.
- * 3: Node address of the client. The range is printed in the column of defaults.
+ * 3: Node address of the client.
  * Full name: i1203_sdo4_server_parameter. RECORD.
- * Codes: C13372/4, C13373/4, C14372/4, C14373/4.
+ * Codes: C13372/4, C13373/4, C13374/4, C14372/4, C14373/4, C14374/4.
  * EDS94AYCCA-EN-5.0, 14 p. 167.
  * Erratum sdo-client-type: printed (type): UNSIGNED32; used: UNSIGNED8.
  * Erratum sdo-client-access: printed (access): ro; used: rw.
@@ -4343,6 +4348,7 @@ typedef enum e94aycca_i1029_sub1_opt {
 #define E94AYCCA_I1203_SUB3_ACCESS (DRIVESPEC_ACCESS_READ | DRIVESPEC_ACCESS_WRITE) ///< printed: ro
 #define E94AYCCA_I1203_SUB3_MIN 1u ///< least wire value
 #define E94AYCCA_I1203_SUB3_MAX 127u ///< largest wire value
+#define E94AYCCA_I1203_SUB3_DEFAULT 1u ///< default
 /** @} */
 
 /**
@@ -4351,9 +4357,9 @@ typedef enum e94aycca_i1029_sub1_opt {
  * directions. Set bit 31, write the new identifier, then clear bit 31.
  * Sub-indexes: 0: highest subindex supported; 1: COB-ID client -> server (Rx); 2: COB-ID server -> client (Tx); 3:
  * Node-ID of the SDO client.
- * 3: Node address of the client. The range is printed in the column of defaults.
+ * 3: Node address of the client.
  * Full name: i1204_sdo5_server_parameter. RECORD.
- * Codes: C13372/5, C13373/5, C14372/5, C14373/5.
+ * Codes: C13372/5, C13373/5, C13374/5, C14372/5, C14373/5, C14374/5.
  * EDS94AYCCA-EN-5.0, 14 p. 167.
  * Erratum sdo-client-type: printed (type): UNSIGNED32; used: UNSIGNED8.
  * Erratum sdo-client-access: printed (access): ro; used: rw.
@@ -4397,6 +4403,7 @@ typedef enum e94aycca_i1029_sub1_opt {
 #define E94AYCCA_I1204_SUB3_ACCESS (DRIVESPEC_ACCESS_READ | DRIVESPEC_ACCESS_WRITE) ///< printed: ro
 #define E94AYCCA_I1204_SUB3_MIN 1u ///< least wire value
 #define E94AYCCA_I1204_SUB3_MAX 127u ///< largest wire value
+#define E94AYCCA_I1204_SUB3_DEFAULT 1u ///< default
 /** @} */
 
 /**
@@ -4405,9 +4412,9 @@ typedef enum e94aycca_i1029_sub1_opt {
  * directions. Set bit 31, write the new identifier, then clear bit 31.
  * Sub-indexes: 0: highest subindex supported; 1: COB-ID client -> server (Rx); 2: COB-ID server -> client (Tx); 3:
  * Node-ID of the SDO client.
- * 3: Node address of the client. The range is printed in the column of defaults.
+ * 3: Node address of the client.
  * Full name: i1205_sdo6_server_parameter. RECORD.
- * Codes: C13372/6, C13373/6, C14372/6, C14373/6.
+ * Codes: C13372/6, C13373/6, C13374/6, C14372/6, C14373/6, C14374/6.
  * EDS94AYCCA-EN-5.0, 14 p. 167.
  * Erratum sdo-client-type: printed (type): UNSIGNED32; used: UNSIGNED8.
  * Erratum sdo-client-access: printed (access): ro; used: rw.
@@ -4451,6 +4458,7 @@ typedef enum e94aycca_i1029_sub1_opt {
 #define E94AYCCA_I1205_SUB3_ACCESS (DRIVESPEC_ACCESS_READ | DRIVESPEC_ACCESS_WRITE) ///< printed: ro
 #define E94AYCCA_I1205_SUB3_MIN 1u ///< least wire value
 #define E94AYCCA_I1205_SUB3_MAX 127u ///< largest wire value
+#define E94AYCCA_I1205_SUB3_DEFAULT 1u ///< default
 /** @} */
 
 /**
@@ -4459,9 +4467,9 @@ typedef enum e94aycca_i1029_sub1_opt {
  * directions. Set bit 31, write the new identifier, then clear bit 31.
  * Sub-indexes: 0: highest subindex supported; 1: COB-ID client -> server (Rx); 2: COB-ID server -> client (Tx); 3:
  * Node-ID of the SDO client.
- * 3: Node address of the client. The range is printed in the column of defaults.
+ * 3: Node address of the client.
  * Full name: i1206_sdo7_server_parameter. RECORD.
- * Codes: C13372/7, C13373/7, C14372/7, C14373/7.
+ * Codes: C13372/7, C13373/7, C13374/7, C14372/7, C14373/7, C14374/7.
  * EDS94AYCCA-EN-5.0, 14 p. 168.
  * Erratum sdo-client-type: printed (type): UNSIGNED32; used: UNSIGNED8.
  * Erratum sdo-client-access: printed (access): ro; used: rw.
@@ -4505,6 +4513,7 @@ typedef enum e94aycca_i1029_sub1_opt {
 #define E94AYCCA_I1206_SUB3_ACCESS (DRIVESPEC_ACCESS_READ | DRIVESPEC_ACCESS_WRITE) ///< printed: ro
 #define E94AYCCA_I1206_SUB3_MIN 1u ///< least wire value
 #define E94AYCCA_I1206_SUB3_MAX 127u ///< largest wire value
+#define E94AYCCA_I1206_SUB3_DEFAULT 1u ///< default
 /** @} */
 
 /**
@@ -4513,9 +4522,9 @@ typedef enum e94aycca_i1029_sub1_opt {
  * directions. Set bit 31, write the new identifier, then clear bit 31.
  * Sub-indexes: 0: highest subindex supported; 1: COB-ID client -> server (Rx); 2: COB-ID server -> client (Tx); 3:
  * Node-ID of the SDO client.
- * 3: Node address of the client. The range is printed in the column of defaults.
+ * 3: Node address of the client.
  * Full name: i1207_sdo8_server_parameter. RECORD.
- * Codes: C13372/8, C13373/8, C14372/8, C14373/8.
+ * Codes: C13372/8, C13373/8, C13374/8, C14372/8, C14373/8, C14374/8.
  * EDS94AYCCA-EN-5.0, 14 p. 168.
  * Erratum sdo-client-type: printed (type): UNSIGNED32; used: UNSIGNED8.
  * Erratum sdo-client-access: printed (access): ro; used: rw.
@@ -4559,6 +4568,7 @@ typedef enum e94aycca_i1029_sub1_opt {
 #define E94AYCCA_I1207_SUB3_ACCESS (DRIVESPEC_ACCESS_READ | DRIVESPEC_ACCESS_WRITE) ///< printed: ro
 #define E94AYCCA_I1207_SUB3_MIN 1u ///< least wire value
 #define E94AYCCA_I1207_SUB3_MAX 127u ///< largest wire value
+#define E94AYCCA_I1207_SUB3_DEFAULT 1u ///< default
 /** @} */
 
 /**
@@ -4567,9 +4577,9 @@ typedef enum e94aycca_i1029_sub1_opt {
  * directions. Set bit 31, write the new identifier, then clear bit 31.
  * Sub-indexes: 0: highest subindex supported; 1: COB-ID client -> server (Rx); 2: COB-ID server -> client (Tx); 3:
  * Node-ID of the SDO client.
- * 3: Node address of the client. The range is printed in the column of defaults.
+ * 3: Node address of the client.
  * Full name: i1208_sdo9_server_parameter. RECORD.
- * Codes: C13372/9, C13373/9, C14372/9, C14373/9.
+ * Codes: C13372/9, C13373/9, C13374/9, C14372/9, C14373/9, C14374/9.
  * EDS94AYCCA-EN-5.0, 14 p. 168.
  * Erratum sdo-client-type: printed (type): UNSIGNED32; used: UNSIGNED8.
  * Erratum sdo-client-access: printed (access): ro; used: rw.
@@ -4613,6 +4623,7 @@ typedef enum e94aycca_i1029_sub1_opt {
 #define E94AYCCA_I1208_SUB3_ACCESS (DRIVESPEC_ACCESS_READ | DRIVESPEC_ACCESS_WRITE) ///< printed: ro
 #define E94AYCCA_I1208_SUB3_MIN 1u ///< least wire value
 #define E94AYCCA_I1208_SUB3_MAX 127u ///< largest wire value
+#define E94AYCCA_I1208_SUB3_DEFAULT 1u ///< default
 /** @} */
 
 /**
@@ -4621,9 +4632,9 @@ typedef enum e94aycca_i1029_sub1_opt {
  * directions. Set bit 31, write the new identifier, then clear bit 31.
  * Sub-indexes: 0: highest subindex supported; 1: COB-ID client -> server (Rx); 2: COB-ID server -> client (Tx); 3:
  * Node-ID of the SDO client.
- * 3: Node address of the client. The range is printed in the column of defaults.
+ * 3: Node address of the client.
  * Full name: i1209_sdo10_server_parameter. RECORD.
- * Codes: C13372/10, C13373/10, C14372/10, C14373/10.
+ * Codes: C13372/10, C13373/10, C13374/10, C14372/10, C14373/10, C14374/10.
  * EDS94AYCCA-EN-5.0, 14 p. 168.
  * Erratum sdo-client-type: printed (type): UNSIGNED32; used: UNSIGNED8.
  * Erratum sdo-client-access: printed (access): ro; used: rw.
@@ -4667,6 +4678,7 @@ typedef enum e94aycca_i1029_sub1_opt {
 #define E94AYCCA_I1209_SUB3_ACCESS (DRIVESPEC_ACCESS_READ | DRIVESPEC_ACCESS_WRITE) ///< printed: ro
 #define E94AYCCA_I1209_SUB3_MIN 1u ///< least wire value
 #define E94AYCCA_I1209_SUB3_MAX 127u ///< largest wire value
+#define E94AYCCA_I1209_SUB3_DEFAULT 1u ///< default
 /** @} */
 
 /**
@@ -5537,11 +5549,9 @@ typedef enum e94aycca_i1029_sub1_opt {
 
 /**
  * @name 0x008C0017 MXI1: CAN module is missing or is incompatible
- * Preset response: Fault. Selectable: Fault.
+ * Preset response: Fault. Selectable: Fault. Adjustable in C00615/2.
  * EDS94AYCCA-EN-5.0, 12.2 p. 91.
- * Erratum module-error-not-adjustable: printed: Can be set in: - (12.1, both numbers p. 89), Setting: not possible
- * (12.2, both numbers p. 91), 1: Fault; Resp. to imperm. module in MXI1, in MXI2 (13.1, C00615/2 and /3 p. 102); used:
- * C00615/2 (MXI1) and C00615/3 (MXI2).
+ * Erratum module-error-not-adjustable: printed: none; used: C00615/....
  * Erratum module-missing-cause: printed: CAN module is missing or is incompatible (12.1, designation p. 89),
  * incompatible with the application (12.2, cause p. 91); used: missing or incompatible.
  * @{
@@ -5551,11 +5561,9 @@ typedef enum e94aycca_i1029_sub1_opt {
 
 /**
  * @name 0x008C0018 MXI2: CAN module is missing or is incompatible
- * Preset response: Fault. Selectable: Fault.
+ * Preset response: Fault. Selectable: Fault. Adjustable in C00615/3.
  * EDS94AYCCA-EN-5.0, 12.2 p. 91.
- * Erratum module-error-not-adjustable: printed: Can be set in: - (12.1, both numbers p. 89), Setting: not possible
- * (12.2, both numbers p. 91), 1: Fault; Resp. to imperm. module in MXI1, in MXI2 (13.1, C00615/2 and /3 p. 102); used:
- * C00615/2 (MXI1) and C00615/3 (MXI2).
+ * Erratum module-error-not-adjustable: printed: none; used: C00615/....
  * Erratum module-missing-cause: printed: CAN module is missing or is incompatible (12.1, designation p. 89),
  * incompatible with the application (12.2, cause p. 91); used: missing or incompatible.
  * @{
@@ -5599,7 +5607,8 @@ typedef enum e94aycca_i1029_sub1_opt {
 
 /**
  * @name 0x009E0000 CAN module (MXI1): heartbeat error index 1 ... 32
- * Cyclic node monitoring; the run holds one number for each of the indices 1 ... 32.
+ * Cyclic node monitoring; one number for each of the monitoring entries 1 ... 32 of C13385 / C14385, which hold the
+ * addresses of the nodes.
  * Preset response: No response. Selectable: None, Fault, Trouble, Quick stop by trouble, Warning locked, Warning,
  * Information. Adjustable in C13613/1...32.
  * EDS94AYCCA-EN-5.0, 12.2 p. 92.
@@ -5654,7 +5663,8 @@ typedef enum e94aycca_i1029_sub1_opt {
 
 /**
  * @name 0x00A00000 CAN module (MXI1): node guarding error 1 ... 32
- * Cyclic node monitoring; the run holds one number for each of the nodes 1 ... 32.
+ * Cyclic node monitoring; one number for each of the monitoring entries 1 ... 32 of C13386 / C14386, which hold the
+ * addresses of the nodes.
  * Preset response: No response. Selectable: None, Fault, Trouble, Quick stop by trouble, Warning locked, Warning,
  * Information. Adjustable in C13612/1...32.
  * EDS94AYCCA-EN-5.0, 12.2 p. 93.
@@ -5875,7 +5885,8 @@ typedef enum e94aycca_i1029_sub1_opt {
 
 /**
  * @name 0x00AD0000 CAN module (MXI2): heartbeat error index 1 ... 32
- * Cyclic node monitoring; the run holds one number for each of the indices 1 ... 32.
+ * Cyclic node monitoring; one number for each of the monitoring entries 1 ... 32 of C13385 / C14385, which hold the
+ * addresses of the nodes.
  * Preset response: No response. Selectable: None, Fault, Trouble, Quick stop by trouble, Warning locked, Warning,
  * Information. Adjustable in C14613/1...32.
  * EDS94AYCCA-EN-5.0, 12.2 p. 97.
@@ -5931,7 +5942,8 @@ typedef enum e94aycca_i1029_sub1_opt {
 
 /**
  * @name 0x00AF0000 CAN module (MXI2): node guarding error 1 ... 32
- * Cyclic node monitoring; the run holds one number for each of the nodes 1 ... 32.
+ * Cyclic node monitoring; one number for each of the monitoring entries 1 ... 32 of C13386 / C14386, which hold the
+ * addresses of the nodes.
  * Preset response: No response. Selectable: None, Fault, Trouble, Quick stop by trouble, Warning locked, Warning,
  * Information. Adjustable in C14612/1...32.
  * EDS94AYCCA-EN-5.0, 12.2 p. 98.

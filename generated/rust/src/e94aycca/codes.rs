@@ -71,9 +71,6 @@ pub const C00369_CAN_SYNC_TRANSMISSION_CYCLE_TIME: Code = Code {
 /// - Subcode 3: Resp. to imperm. module in MXI2; default 1 (Fault)
 /// - Subcodes 4 ... 5: Reserved; default 0 (No response)
 /// - Source: EDS94AYCCA-EN-5.0, 13.1 p. 102
-/// - Erratum `module-error-not-adjustable`: printed 12.1, both numbers: Can be set in: -; 12.2, both numbers: Setting:
-///   not possible; 13.1, C00615/2 and /3: 1: Fault; Resp. to imperm. module in MXI1, in MXI2, used C00615/2 (MXI1) and
-///   C00615/3 (MXI2)
 pub const C00615_RESP_TO_IMP_DEVICE_CONFIG: Code = Code {
     number: 615,
     twin_of: 615,
@@ -104,7 +101,6 @@ pub const C00615_RESP_TO_IMP_DEVICE_CONFIG: Code = Code {
     shared_by: Some("servo-drives-9400"),
     origin: Origin::Manual,
     cite: Cite { manual: "EDS94AYCCA-EN-5.0", chapter: "13.1", page: Some(102) },
-    errata: &["module-error-not-adjustable"],
     ..Code::EMPTY
 };
 
@@ -1613,6 +1609,7 @@ pub const C13373_CAN_SDO_SERVER_TX_IDENTIFIER: Code = Code {
 /// - Subcode 1: SDO server channel 1 remote client node address; default 1; Basic SDO channel, for which DS301 has no
 ///   such entry; a write is ignored. The value of subindex 1 is given as 0
 /// - Subcodes 2 ... 10: SDO server channel *n* remote client node address; default 1
+/// - Mirrors I-1201/3, I-1202/3, I-1203/3, I-1204/3, I-1205/3, I-1206/3, I-1207/3, I-1208/3, I-1209/3
 /// - Source: EDS94AYCCA-EN-5.0, 13.2 p. 118
 /// - Erratum `table-of-attributes-index`: printed 24575 - code mod 1000, used 24575 - code
 /// - Erratum `sdo-client-address-range`: printed 13.2, C13374: 1 ... 127; 13.2, C13374/1, Lenze setting: 1; 13.2,
@@ -1693,6 +1690,17 @@ pub const C13374_CAN_SDO_CLIENT_NODE_ADDRESS: Code = Code {
             default: Some(Value::Number(1)),
             ..SubCode::EMPTY
         },
+    ],
+    objects: &[
+        ObjectRef { index: 0x1201, subindex: Some(3) },
+        ObjectRef { index: 0x1202, subindex: Some(3) },
+        ObjectRef { index: 0x1203, subindex: Some(3) },
+        ObjectRef { index: 0x1204, subindex: Some(3) },
+        ObjectRef { index: 0x1205, subindex: Some(3) },
+        ObjectRef { index: 0x1206, subindex: Some(3) },
+        ObjectRef { index: 0x1207, subindex: Some(3) },
+        ObjectRef { index: 0x1208, subindex: Some(3) },
+        ObjectRef { index: 0x1209, subindex: Some(3) },
     ],
     origin: Origin::Manual,
     cite: Cite { manual: "EDS94AYCCA-EN-5.0", chapter: "13.2", page: Some(118) },
@@ -2813,6 +2821,7 @@ pub const C13393_CAN_RESULT_BUS_SCAN: Code = Code {
 /// - Index 0x2BAD (11181), type UNSIGNED_32, read
 /// - Range: 0 ... 4294967295
 /// - Subcodes 1 ... 10
+/// - Mirrors I-1003/1, I-1003/2, I-1003/3, I-1003/4, I-1003/5, I-1003/6, I-1003/7, I-1003/8, I-1003/9, I-1003/10
 /// - Source: EDS94AYCCA-EN-5.0, 13.2 p. 124
 /// - Erratum `table-of-attributes-index`: printed 24575 - code mod 1000, used 24575 - code
 /// - Erratum `c13394-index`: printed 24181, used 11181
@@ -2841,6 +2850,18 @@ pub const C13394_CAN_PREDEFINED_ERROR_FIELD_DS301V402: Code = Code {
         SubCode { number: 8, ..SubCode::EMPTY },
         SubCode { number: 9, ..SubCode::EMPTY },
         SubCode { number: 10, ..SubCode::EMPTY },
+    ],
+    objects: &[
+        ObjectRef { index: 0x1003, subindex: Some(1) },
+        ObjectRef { index: 0x1003, subindex: Some(2) },
+        ObjectRef { index: 0x1003, subindex: Some(3) },
+        ObjectRef { index: 0x1003, subindex: Some(4) },
+        ObjectRef { index: 0x1003, subindex: Some(5) },
+        ObjectRef { index: 0x1003, subindex: Some(6) },
+        ObjectRef { index: 0x1003, subindex: Some(7) },
+        ObjectRef { index: 0x1003, subindex: Some(8) },
+        ObjectRef { index: 0x1003, subindex: Some(9) },
+        ObjectRef { index: 0x1003, subindex: Some(10) },
     ],
     origin: Origin::Manual,
     cite: Cite { manual: "EDS94AYCCA-EN-5.0", chapter: "13.2", page: Some(124) },
@@ -4124,6 +4145,7 @@ pub const C14373_CAN_SDO_SERVER_TX_IDENTIFIER: Code = Code {
 /// - Subcode 1: SDO server channel 1 remote client node address; default 1; Basic SDO channel, for which DS301 has no
 ///   such entry; a write is ignored. The value of subindex 1 is given as 0
 /// - Subcodes 2 ... 10: SDO server channel *n* remote client node address; default 1
+/// - Mirrors I-1201/3, I-1202/3, I-1203/3, I-1204/3, I-1205/3, I-1206/3, I-1207/3, I-1208/3, I-1209/3
 /// - Source: EDS94AYCCA-EN-5.0, 13.3 p. 139
 /// - Erratum `table-of-attributes-index`: printed 24575 - code mod 1000, used 24575 - code
 /// - Erratum `chapter-13-3-index`: printed 25575 - code, used 24575 - code
@@ -4477,6 +4499,7 @@ pub const C14393_CAN_RESULT_BUS_SCAN: Code = Code {
 /// - Index 0x27C5 (10181), type UNSIGNED_32, read
 /// - Range: 0 ... 4294967295
 /// - Subcodes 1 ... 10
+/// - Mirrors I-1003/1, I-1003/2, I-1003/3, I-1003/4, I-1003/5, I-1003/6, I-1003/7, I-1003/8, I-1003/9, I-1003/10
 /// - Source: EDS94AYCCA-EN-5.0, 13.3 p. 145
 /// - Erratum `table-of-attributes-index`: printed 24575 - code mod 1000, used 24575 - code
 /// - Erratum `c14394-index`: printed 24181, used 10181

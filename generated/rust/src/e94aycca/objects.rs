@@ -68,8 +68,8 @@ pub const I1001_ERROR_REGISTER: Object = Object {
 ///
 /// - Sub-index 0: Number of errors; UNSIGNED8 rw; range 0 ... 255; default 0; Number of errors in the list; write 0 to
 ///   clear it
-/// - Sub-indexes 1 ... 10: Standard error field; UNSIGNED32 ro; range 0 ... 4294967295; A 16-bit error code together
-///   with 16 bits of the manufacturer's own
+/// - Sub-indexes 1 ... 10: Standard error field; UNSIGNED32 ro; range 0 ... 4294967295; mirrored by C13394/*n*,
+///   C14394/*n*; A 16-bit error code together with 16 bits of the manufacturer's own
 /// - Source: EDS94AYCCA-EN-5.0, 14 p. 156
 /// - Erratum `emergency-0x1000-responses`: printed 10.3: Fault, Trouble, Quick stop by trouble, Warning, Warning
 ///   locked, System fault; 14, I-1003: Trouble, Message, Warning, Fault, Quick stop by trouble, System fault, used
@@ -100,6 +100,7 @@ pub const I1003_PRE_DEFINED_ERROR_FIELD: Object = Object {
             data_type: DataType::Unsigned32,
             access: EntryAccess::Ro,
             range: Some(Range { low: 0, high: 4294967295, unit: "" }),
+            codes: &[CodeRef { number: 13394, subcode: Some(1) }, CodeRef { number: 14394, subcode: Some(1) }],
             ..SubIndex::EMPTY
         },
         SubIndex {
@@ -108,6 +109,7 @@ pub const I1003_PRE_DEFINED_ERROR_FIELD: Object = Object {
             data_type: DataType::Unsigned32,
             access: EntryAccess::Ro,
             range: Some(Range { low: 0, high: 4294967295, unit: "" }),
+            codes: &[CodeRef { number: 13394, subcode: Some(2) }, CodeRef { number: 14394, subcode: Some(2) }],
             ..SubIndex::EMPTY
         },
         SubIndex {
@@ -116,6 +118,7 @@ pub const I1003_PRE_DEFINED_ERROR_FIELD: Object = Object {
             data_type: DataType::Unsigned32,
             access: EntryAccess::Ro,
             range: Some(Range { low: 0, high: 4294967295, unit: "" }),
+            codes: &[CodeRef { number: 13394, subcode: Some(3) }, CodeRef { number: 14394, subcode: Some(3) }],
             ..SubIndex::EMPTY
         },
         SubIndex {
@@ -124,6 +127,7 @@ pub const I1003_PRE_DEFINED_ERROR_FIELD: Object = Object {
             data_type: DataType::Unsigned32,
             access: EntryAccess::Ro,
             range: Some(Range { low: 0, high: 4294967295, unit: "" }),
+            codes: &[CodeRef { number: 13394, subcode: Some(4) }, CodeRef { number: 14394, subcode: Some(4) }],
             ..SubIndex::EMPTY
         },
         SubIndex {
@@ -132,6 +136,7 @@ pub const I1003_PRE_DEFINED_ERROR_FIELD: Object = Object {
             data_type: DataType::Unsigned32,
             access: EntryAccess::Ro,
             range: Some(Range { low: 0, high: 4294967295, unit: "" }),
+            codes: &[CodeRef { number: 13394, subcode: Some(5) }, CodeRef { number: 14394, subcode: Some(5) }],
             ..SubIndex::EMPTY
         },
         SubIndex {
@@ -140,6 +145,7 @@ pub const I1003_PRE_DEFINED_ERROR_FIELD: Object = Object {
             data_type: DataType::Unsigned32,
             access: EntryAccess::Ro,
             range: Some(Range { low: 0, high: 4294967295, unit: "" }),
+            codes: &[CodeRef { number: 13394, subcode: Some(6) }, CodeRef { number: 14394, subcode: Some(6) }],
             ..SubIndex::EMPTY
         },
         SubIndex {
@@ -148,6 +154,7 @@ pub const I1003_PRE_DEFINED_ERROR_FIELD: Object = Object {
             data_type: DataType::Unsigned32,
             access: EntryAccess::Ro,
             range: Some(Range { low: 0, high: 4294967295, unit: "" }),
+            codes: &[CodeRef { number: 13394, subcode: Some(7) }, CodeRef { number: 14394, subcode: Some(7) }],
             ..SubIndex::EMPTY
         },
         SubIndex {
@@ -156,6 +163,7 @@ pub const I1003_PRE_DEFINED_ERROR_FIELD: Object = Object {
             data_type: DataType::Unsigned32,
             access: EntryAccess::Ro,
             range: Some(Range { low: 0, high: 4294967295, unit: "" }),
+            codes: &[CodeRef { number: 13394, subcode: Some(8) }, CodeRef { number: 14394, subcode: Some(8) }],
             ..SubIndex::EMPTY
         },
         SubIndex {
@@ -164,6 +172,7 @@ pub const I1003_PRE_DEFINED_ERROR_FIELD: Object = Object {
             data_type: DataType::Unsigned32,
             access: EntryAccess::Ro,
             range: Some(Range { low: 0, high: 4294967295, unit: "" }),
+            codes: &[CodeRef { number: 13394, subcode: Some(9) }, CodeRef { number: 14394, subcode: Some(9) }],
             ..SubIndex::EMPTY
         },
         SubIndex {
@@ -172,6 +181,7 @@ pub const I1003_PRE_DEFINED_ERROR_FIELD: Object = Object {
             data_type: DataType::Unsigned32,
             access: EntryAccess::Ro,
             range: Some(Range { low: 0, high: 4294967295, unit: "" }),
+            codes: &[CodeRef { number: 13394, subcode: Some(10) }, CodeRef { number: 14394, subcode: Some(10) }],
             ..SubIndex::EMPTY
         },
     ],
@@ -228,7 +238,7 @@ pub const I1005_COB_ID_SYNC_MESSAGE: Object = Object {
 ///
 /// Cycle in which SYNC telegrams are sent, 1000 or a whole multiple of it. None are sent with 0.
 ///
-/// - Sub-index 0: Communication cycle period; UNSIGNED32 rw; range 0 ... 65535000 μs; default 0; mirrored by C00369
+/// - Sub-index 0: Communication cycle period; UNSIGNED32 rw; range 0 ... 65535000 μs; default 0; mirrored by C00369/2
 /// - Source: EDS94AYCCA-EN-5.0, 14 p. 158
 /// - Erratum `i-1006-subcode`: printed 14, overview: C00369; 14, I-1006: C00369; 13.1, C00369: C00369/1 ... C00369/3,
 ///   used C00369/2
@@ -244,7 +254,7 @@ pub const I1006_COMMUNICATION_CYCLE_PERIOD: Object = Object {
         access: EntryAccess::Rw,
         default: Some(Value::Number(0)),
         range: Some(Range { low: 0, high: 65535000, unit: "μs" }),
-        codes: &[CodeRef { number: 369, subcode: None }],
+        codes: &[CodeRef { number: 369, subcode: Some(2) }],
         ..SubIndex::EMPTY
     }],
     origin: Origin::Manual,
@@ -886,7 +896,7 @@ pub const I1017_PRODUCER_HEARTBEAT_TIME: Object = Object {
 ///
 /// Who made the device, what it is, its firmware version and its serial number.
 ///
-/// - Sub-index 0: highest subindex supported; UNSIGNED8 ro (printed: UNSIGNED32 ro)
+/// - Sub-index 0: highest subindex supported; UNSIGNED8 ro (printed: UNSIGNED32 ro); default 4
 /// - Sub-index 1: Vendor ID; UNSIGNED32 ro; range 0 ... 4294967295; default 59; Number that CAN in Automation gave to
 ///   Lenze
 /// - Sub-index 2: Product code; UNSIGNED32 ro; range 0 ... 4294967295; values
@@ -909,6 +919,7 @@ pub const I1018_IDENTITY_OBJECT: Object = Object {
             name: "highest subindex supported",
             data_type: DataType::Unsigned8,
             access: EntryAccess::Ro,
+            default: Some(Value::Number(4)),
             errata: &["sub-0-width", "i-1018-see-below"],
             ..SubIndex::EMPTY
         },
@@ -1056,8 +1067,8 @@ pub const I1200_SDO1_SERVER_PARAMETER: Object = Object {
 ///   C13372/2, C14372/2; bits [`i1201_sdo2_server_parameter`](super::bits::i1201_sdo2_server_parameter)
 /// - Sub-index 2: COB-ID server -\> client (Tx); UNSIGNED32 rw; range 0 ... 4294967295; default 2147483648; mirrored by
 ///   C13373/2, C14373/2; bits [`i1201_sdo2_server_parameter`](super::bits::i1201_sdo2_server_parameter)
-/// - Sub-index 3: Node-ID of the SDO client; UNSIGNED8 rw (printed: UNSIGNED32 ro); range 1 ... 127; Node address of
-///   the client. The range is printed in the column of defaults
+/// - Sub-index 3: Node-ID of the SDO client; UNSIGNED8 rw (printed: UNSIGNED32 ro); range 1 ... 127; default 1;
+///   mirrored by C13374/2, C14374/2; Node address of the client
 /// - Source: EDS94AYCCA-EN-5.0, 14 p. 165
 /// - Erratum `sdo-client-type`: printed UNSIGNED32, used UNSIGNED8
 /// - Erratum `sdo-client-access`: printed ro, used rw
@@ -1112,7 +1123,9 @@ pub const I1201_SDO2_SERVER_PARAMETER: Object = Object {
             name: "Node-ID of the SDO client",
             data_type: DataType::Unsigned8,
             access: EntryAccess::Rw,
+            default: Some(Value::Number(1)),
             range: Some(Range { low: 1, high: 127, unit: "" }),
+            codes: &[CodeRef { number: 13374, subcode: Some(2) }, CodeRef { number: 14374, subcode: Some(2) }],
             errata: &["sdo-client-type", "sdo-client-access", "codes-not-named", "sdo-client-default"],
             ..SubIndex::EMPTY
         },
@@ -1132,8 +1145,8 @@ pub const I1201_SDO2_SERVER_PARAMETER: Object = Object {
 ///   C13372/3, C14372/3; bits [`i1202_sdo3_server_parameter`](super::bits::i1202_sdo3_server_parameter)
 /// - Sub-index 2: COB-ID server -\> client (Tx); UNSIGNED32 rw; range 0 ... 4294967295; default 2147483648; mirrored by
 ///   C13373/3, C14373/3; bits [`i1202_sdo3_server_parameter`](super::bits::i1202_sdo3_server_parameter)
-/// - Sub-index 3: Node-ID of the SDO client; UNSIGNED8 rw (printed: UNSIGNED32 ro); range 1 ... 127; Node address of
-///   the client. The range is printed in the column of defaults
+/// - Sub-index 3: Node-ID of the SDO client; UNSIGNED8 rw (printed: UNSIGNED32 ro); range 1 ... 127; default 1;
+///   mirrored by C13374/3, C14374/3; Node address of the client
 /// - Source: EDS94AYCCA-EN-5.0, 14 p. 167
 /// - Erratum `sdo-client-type`: printed UNSIGNED32, used UNSIGNED8
 /// - Erratum `sdo-client-access`: printed ro, used rw
@@ -1188,7 +1201,9 @@ pub const I1202_SDO3_SERVER_PARAMETER: Object = Object {
             name: "Node-ID of the SDO client",
             data_type: DataType::Unsigned8,
             access: EntryAccess::Rw,
+            default: Some(Value::Number(1)),
             range: Some(Range { low: 1, high: 127, unit: "" }),
+            codes: &[CodeRef { number: 13374, subcode: Some(3) }, CodeRef { number: 14374, subcode: Some(3) }],
             errata: &["sdo-client-type", "sdo-client-access", "codes-not-named", "sdo-client-default"],
             ..SubIndex::EMPTY
         },
@@ -1208,8 +1223,8 @@ pub const I1202_SDO3_SERVER_PARAMETER: Object = Object {
 ///   C13372/4, C14372/4; bits [`i1203_sdo4_server_parameter`](super::bits::i1203_sdo4_server_parameter)
 /// - Sub-index 2: COB-ID server -\> client (Tx); UNSIGNED32 rw; range 0 ... 4294967295; default 2147483648; mirrored by
 ///   C13373/4, C14373/4; bits [`i1203_sdo4_server_parameter`](super::bits::i1203_sdo4_server_parameter)
-/// - Sub-index 3: Node-ID of the SDO client; UNSIGNED8 rw (printed: UNSIGNED32 ro); range 1 ... 127; Node address of
-///   the client. The range is printed in the column of defaults
+/// - Sub-index 3: Node-ID of the SDO client; UNSIGNED8 rw (printed: UNSIGNED32 ro); range 1 ... 127; default 1;
+///   mirrored by C13374/4, C14374/4; Node address of the client
 /// - Source: EDS94AYCCA-EN-5.0, 14 p. 167
 /// - Erratum `sdo-client-type`: printed UNSIGNED32, used UNSIGNED8
 /// - Erratum `sdo-client-access`: printed ro, used rw
@@ -1264,7 +1279,9 @@ pub const I1203_SDO4_SERVER_PARAMETER: Object = Object {
             name: "Node-ID of the SDO client",
             data_type: DataType::Unsigned8,
             access: EntryAccess::Rw,
+            default: Some(Value::Number(1)),
             range: Some(Range { low: 1, high: 127, unit: "" }),
+            codes: &[CodeRef { number: 13374, subcode: Some(4) }, CodeRef { number: 14374, subcode: Some(4) }],
             errata: &["sdo-client-type", "sdo-client-access", "codes-not-named", "sdo-client-default"],
             ..SubIndex::EMPTY
         },
@@ -1284,8 +1301,8 @@ pub const I1203_SDO4_SERVER_PARAMETER: Object = Object {
 ///   C13372/5, C14372/5; bits [`i1204_sdo5_server_parameter`](super::bits::i1204_sdo5_server_parameter)
 /// - Sub-index 2: COB-ID server -\> client (Tx); UNSIGNED32 rw; range 0 ... 4294967295; default 2147483648; mirrored by
 ///   C13373/5, C14373/5; bits [`i1204_sdo5_server_parameter`](super::bits::i1204_sdo5_server_parameter)
-/// - Sub-index 3: Node-ID of the SDO client; UNSIGNED8 rw (printed: UNSIGNED32 ro); range 1 ... 127; Node address of
-///   the client. The range is printed in the column of defaults
+/// - Sub-index 3: Node-ID of the SDO client; UNSIGNED8 rw (printed: UNSIGNED32 ro); range 1 ... 127; default 1;
+///   mirrored by C13374/5, C14374/5; Node address of the client
 /// - Source: EDS94AYCCA-EN-5.0, 14 p. 167
 /// - Erratum `sdo-client-type`: printed UNSIGNED32, used UNSIGNED8
 /// - Erratum `sdo-client-access`: printed ro, used rw
@@ -1340,7 +1357,9 @@ pub const I1204_SDO5_SERVER_PARAMETER: Object = Object {
             name: "Node-ID of the SDO client",
             data_type: DataType::Unsigned8,
             access: EntryAccess::Rw,
+            default: Some(Value::Number(1)),
             range: Some(Range { low: 1, high: 127, unit: "" }),
+            codes: &[CodeRef { number: 13374, subcode: Some(5) }, CodeRef { number: 14374, subcode: Some(5) }],
             errata: &["sdo-client-type", "sdo-client-access", "codes-not-named", "sdo-client-default"],
             ..SubIndex::EMPTY
         },
@@ -1360,8 +1379,8 @@ pub const I1204_SDO5_SERVER_PARAMETER: Object = Object {
 ///   C13372/6, C14372/6; bits [`i1205_sdo6_server_parameter`](super::bits::i1205_sdo6_server_parameter)
 /// - Sub-index 2: COB-ID server -\> client (Tx); UNSIGNED32 rw; range 0 ... 4294967295; default 2147483648; mirrored by
 ///   C13373/6, C14373/6; bits [`i1205_sdo6_server_parameter`](super::bits::i1205_sdo6_server_parameter)
-/// - Sub-index 3: Node-ID of the SDO client; UNSIGNED8 rw (printed: UNSIGNED32 ro); range 1 ... 127; Node address of
-///   the client. The range is printed in the column of defaults
+/// - Sub-index 3: Node-ID of the SDO client; UNSIGNED8 rw (printed: UNSIGNED32 ro); range 1 ... 127; default 1;
+///   mirrored by C13374/6, C14374/6; Node address of the client
 /// - Source: EDS94AYCCA-EN-5.0, 14 p. 167
 /// - Erratum `sdo-client-type`: printed UNSIGNED32, used UNSIGNED8
 /// - Erratum `sdo-client-access`: printed ro, used rw
@@ -1416,7 +1435,9 @@ pub const I1205_SDO6_SERVER_PARAMETER: Object = Object {
             name: "Node-ID of the SDO client",
             data_type: DataType::Unsigned8,
             access: EntryAccess::Rw,
+            default: Some(Value::Number(1)),
             range: Some(Range { low: 1, high: 127, unit: "" }),
+            codes: &[CodeRef { number: 13374, subcode: Some(6) }, CodeRef { number: 14374, subcode: Some(6) }],
             errata: &["sdo-client-type", "sdo-client-access", "codes-not-named", "sdo-client-default"],
             ..SubIndex::EMPTY
         },
@@ -1436,8 +1457,8 @@ pub const I1205_SDO6_SERVER_PARAMETER: Object = Object {
 ///   C13372/7, C14372/7; bits [`i1206_sdo7_server_parameter`](super::bits::i1206_sdo7_server_parameter)
 /// - Sub-index 2: COB-ID server -\> client (Tx); UNSIGNED32 rw; range 0 ... 4294967295; default 2147483648; mirrored by
 ///   C13373/7, C14373/7; bits [`i1206_sdo7_server_parameter`](super::bits::i1206_sdo7_server_parameter)
-/// - Sub-index 3: Node-ID of the SDO client; UNSIGNED8 rw (printed: UNSIGNED32 ro); range 1 ... 127; Node address of
-///   the client. The range is printed in the column of defaults
+/// - Sub-index 3: Node-ID of the SDO client; UNSIGNED8 rw (printed: UNSIGNED32 ro); range 1 ... 127; default 1;
+///   mirrored by C13374/7, C14374/7; Node address of the client
 /// - Source: EDS94AYCCA-EN-5.0, 14 p. 168
 /// - Erratum `sdo-client-type`: printed UNSIGNED32, used UNSIGNED8
 /// - Erratum `sdo-client-access`: printed ro, used rw
@@ -1492,7 +1513,9 @@ pub const I1206_SDO7_SERVER_PARAMETER: Object = Object {
             name: "Node-ID of the SDO client",
             data_type: DataType::Unsigned8,
             access: EntryAccess::Rw,
+            default: Some(Value::Number(1)),
             range: Some(Range { low: 1, high: 127, unit: "" }),
+            codes: &[CodeRef { number: 13374, subcode: Some(7) }, CodeRef { number: 14374, subcode: Some(7) }],
             errata: &["sdo-client-type", "sdo-client-access", "codes-not-named", "sdo-client-default"],
             ..SubIndex::EMPTY
         },
@@ -1512,8 +1535,8 @@ pub const I1206_SDO7_SERVER_PARAMETER: Object = Object {
 ///   C13372/8, C14372/8; bits [`i1207_sdo8_server_parameter`](super::bits::i1207_sdo8_server_parameter)
 /// - Sub-index 2: COB-ID server -\> client (Tx); UNSIGNED32 rw; range 0 ... 4294967295; default 2147483648; mirrored by
 ///   C13373/8, C14373/8; bits [`i1207_sdo8_server_parameter`](super::bits::i1207_sdo8_server_parameter)
-/// - Sub-index 3: Node-ID of the SDO client; UNSIGNED8 rw (printed: UNSIGNED32 ro); range 1 ... 127; Node address of
-///   the client. The range is printed in the column of defaults
+/// - Sub-index 3: Node-ID of the SDO client; UNSIGNED8 rw (printed: UNSIGNED32 ro); range 1 ... 127; default 1;
+///   mirrored by C13374/8, C14374/8; Node address of the client
 /// - Source: EDS94AYCCA-EN-5.0, 14 p. 168
 /// - Erratum `sdo-client-type`: printed UNSIGNED32, used UNSIGNED8
 /// - Erratum `sdo-client-access`: printed ro, used rw
@@ -1568,7 +1591,9 @@ pub const I1207_SDO8_SERVER_PARAMETER: Object = Object {
             name: "Node-ID of the SDO client",
             data_type: DataType::Unsigned8,
             access: EntryAccess::Rw,
+            default: Some(Value::Number(1)),
             range: Some(Range { low: 1, high: 127, unit: "" }),
+            codes: &[CodeRef { number: 13374, subcode: Some(8) }, CodeRef { number: 14374, subcode: Some(8) }],
             errata: &["sdo-client-type", "sdo-client-access", "codes-not-named", "sdo-client-default"],
             ..SubIndex::EMPTY
         },
@@ -1588,8 +1613,8 @@ pub const I1207_SDO8_SERVER_PARAMETER: Object = Object {
 ///   C13372/9, C14372/9; bits [`i1208_sdo9_server_parameter`](super::bits::i1208_sdo9_server_parameter)
 /// - Sub-index 2: COB-ID server -\> client (Tx); UNSIGNED32 rw; range 0 ... 4294967295; default 2147483648; mirrored by
 ///   C13373/9, C14373/9; bits [`i1208_sdo9_server_parameter`](super::bits::i1208_sdo9_server_parameter)
-/// - Sub-index 3: Node-ID of the SDO client; UNSIGNED8 rw (printed: UNSIGNED32 ro); range 1 ... 127; Node address of
-///   the client. The range is printed in the column of defaults
+/// - Sub-index 3: Node-ID of the SDO client; UNSIGNED8 rw (printed: UNSIGNED32 ro); range 1 ... 127; default 1;
+///   mirrored by C13374/9, C14374/9; Node address of the client
 /// - Source: EDS94AYCCA-EN-5.0, 14 p. 168
 /// - Erratum `sdo-client-type`: printed UNSIGNED32, used UNSIGNED8
 /// - Erratum `sdo-client-access`: printed ro, used rw
@@ -1644,7 +1669,9 @@ pub const I1208_SDO9_SERVER_PARAMETER: Object = Object {
             name: "Node-ID of the SDO client",
             data_type: DataType::Unsigned8,
             access: EntryAccess::Rw,
+            default: Some(Value::Number(1)),
             range: Some(Range { low: 1, high: 127, unit: "" }),
+            codes: &[CodeRef { number: 13374, subcode: Some(9) }, CodeRef { number: 14374, subcode: Some(9) }],
             errata: &["sdo-client-type", "sdo-client-access", "codes-not-named", "sdo-client-default"],
             ..SubIndex::EMPTY
         },
@@ -1664,8 +1691,8 @@ pub const I1208_SDO9_SERVER_PARAMETER: Object = Object {
 ///   C13372/10, C14372/10; bits [`i1209_sdo10_server_parameter`](super::bits::i1209_sdo10_server_parameter)
 /// - Sub-index 2: COB-ID server -\> client (Tx); UNSIGNED32 rw; range 0 ... 4294967295; default 2147483648; mirrored by
 ///   C13373/10, C14373/10; bits [`i1209_sdo10_server_parameter`](super::bits::i1209_sdo10_server_parameter)
-/// - Sub-index 3: Node-ID of the SDO client; UNSIGNED8 rw (printed: UNSIGNED32 ro); range 1 ... 127; Node address of
-///   the client. The range is printed in the column of defaults
+/// - Sub-index 3: Node-ID of the SDO client; UNSIGNED8 rw (printed: UNSIGNED32 ro); range 1 ... 127; default 1;
+///   mirrored by C13374/10, C14374/10; Node address of the client
 /// - Source: EDS94AYCCA-EN-5.0, 14 p. 168
 /// - Erratum `sdo-client-type`: printed UNSIGNED32, used UNSIGNED8
 /// - Erratum `sdo-client-access`: printed ro, used rw
@@ -1720,7 +1747,9 @@ pub const I1209_SDO10_SERVER_PARAMETER: Object = Object {
             name: "Node-ID of the SDO client",
             data_type: DataType::Unsigned8,
             access: EntryAccess::Rw,
+            default: Some(Value::Number(1)),
             range: Some(Range { low: 1, high: 127, unit: "" }),
+            codes: &[CodeRef { number: 13374, subcode: Some(10) }, CodeRef { number: 14374, subcode: Some(10) }],
             errata: &["sdo-client-type", "sdo-client-access", "codes-not-named", "sdo-client-default"],
             ..SubIndex::EMPTY
         },

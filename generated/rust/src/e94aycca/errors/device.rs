@@ -11,12 +11,11 @@ use crate::types::*;
 /// - Number 0x008C0017
 /// - Response: Fault
 /// - Responses to choose from: Fault
+/// - Response set in C00615/2
 /// - Cause: The application does not support the CANopen module in slot MXI1.
 /// - Remedy: Use a communication module that the application supports.
 /// - Source: EDS94AYCCA-EN-5.0, 12.2 p. 91
-/// - Erratum `module-error-not-adjustable`: printed 12.1, both numbers: Can be set in: -; 12.2, both numbers: Setting:
-///   not possible; 13.1, C00615/2 and /3: 1: Fault; Resp. to imperm. module in MXI1, in MXI2, used C00615/2 (MXI1) and
-///   C00615/3 (MXI2)
+/// - Erratum `module-error-not-adjustable`: printed none, used C00615/...
 /// - Erratum `module-missing-cause`: printed 12.1, designation: CAN module is missing or is incompatible; 12.2, cause:
 ///   incompatible with the application, used missing or incompatible
 pub const MXI1_CAN_MODULE_IS_MISSING_OR_IS_INCOMPATIBLE: u32 = 0x008C_0017;
@@ -26,12 +25,11 @@ pub const MXI1_CAN_MODULE_IS_MISSING_OR_IS_INCOMPATIBLE: u32 = 0x008C_0017;
 /// - Number 0x008C0018
 /// - Response: Fault
 /// - Responses to choose from: Fault
+/// - Response set in C00615/3
 /// - Cause: The application does not support the CANopen module in slot MXI2.
 /// - Remedy: Use a communication module that the application supports.
 /// - Source: EDS94AYCCA-EN-5.0, 12.2 p. 91
-/// - Erratum `module-error-not-adjustable`: printed 12.1, both numbers: Can be set in: -; 12.2, both numbers: Setting:
-///   not possible; 13.1, C00615/2 and /3: 1: Fault; Resp. to imperm. module in MXI1, in MXI2, used C00615/2 (MXI1) and
-///   C00615/3 (MXI2)
+/// - Erratum `module-error-not-adjustable`: printed none, used C00615/...
 /// - Erratum `module-missing-cause`: printed 12.1, designation: CAN module is missing or is incompatible; 12.2, cause:
 ///   incompatible with the application, used missing or incompatible
 pub const MXI2_CAN_MODULE_IS_MISSING_OR_IS_INCOMPATIBLE: u32 = 0x008C_0018;
@@ -84,16 +82,17 @@ pub const CAN_MODULE_MXI1_BASIC_CONFIGURATION_INVALID: u32 = 0x009D_0002;
 
 /// CAN module (MXI1): heartbeat error index 1 ... 32.
 ///
-/// Cyclic node monitoring; the run holds one number for each of the indices 1 ... 32.
+/// Cyclic node monitoring; one number for each of the monitoring entries 1 ... 32 of C13385 / C14385, which hold the
+/// addresses of the nodes.
 ///
 /// - Number 0x009E0000 ... 0x009E001F
 /// - Response: No response
 /// - Responses to choose from: None, Fault, Trouble, Quick stop by trouble, Warning locked, Warning, Information
 /// - Response set in C13613/1 ... 32
-/// - Cause: One of the nodes 1 ... 32 sent no heartbeat telegram to the module in this slot within the time set.
+/// - Cause: The node of the monitoring entry sent no heartbeat telegram to the module in this slot within the time set.
 /// - Remedy: Reactivate the CAN node: switch the mains off and on, restart the controller (C00002 = 11000) or reset the
 ///   node (C00002 = 92).
-/// - Remedy: Set the monitoring time for the heartbeat producer anew or switch the monitoring off.
+/// - Remedy: Set the heartbeat consumer time of the entry anew (C13385 / C14385) or switch the monitoring off.
 /// - Remedy: Reset the error status if it is still active.
 /// - Remedy: Save the parameter set (C00002 = 11) before you switch the mains or restart the controller.
 /// - Source: EDS94AYCCA-EN-5.0, 12.2 p. 92
@@ -158,17 +157,18 @@ pub const CAN_MODULE_MXI1_EMERGENCY_CONFIGURATION_INCOMPLETE: u32 = 0x009F_0000;
 
 /// CAN module (MXI1): node guarding error 1 ... 32.
 ///
-/// Cyclic node monitoring; the run holds one number for each of the nodes 1 ... 32.
+/// Cyclic node monitoring; one number for each of the monitoring entries 1 ... 32 of C13386 / C14386, which hold the
+/// addresses of the nodes.
 ///
 /// - Number 0x00A00000 ... 0x00A0001F
 /// - Response: No response
 /// - Responses to choose from: None, Fault, Trouble, Quick stop by trouble, Warning locked, Warning, Information
 /// - Response set in C13612/1 ... 32
-/// - Cause: One of the nodes 1 ... 32 did not answer a node guarding telegram (RTR) of the master in this slot within
-///   the time set.
+/// - Cause: The node of the monitoring entry did not answer a node guarding telegram (RTR) of the master in this slot
+///   within the time set.
 /// - Remedy: Reactivate the CAN node: switch the mains off and on, restart the controller (C00002 = 11000) or reset the
 ///   node (C00002 = 92).
-/// - Remedy: Set the node guarding time anew or switch the monitoring off.
+/// - Remedy: Set the guard time of the entry anew (C13386 / C14386) or switch the monitoring off.
 /// - Remedy: Reset the error status if it is still active.
 /// - Remedy: Save the parameter set (C00002 = 11) before you switch the mains or restart the controller.
 /// - Source: EDS94AYCCA-EN-5.0, 12.2 p. 93
@@ -461,16 +461,17 @@ pub const CAN_MODULE_MXI2_BASIC_CONFIGURATION_INVALID: u32 = 0x00AC_0002;
 
 /// CAN module (MXI2): heartbeat error index 1 ... 32.
 ///
-/// Cyclic node monitoring; the run holds one number for each of the indices 1 ... 32.
+/// Cyclic node monitoring; one number for each of the monitoring entries 1 ... 32 of C13385 / C14385, which hold the
+/// addresses of the nodes.
 ///
 /// - Number 0x00AD0000 ... 0x00AD001F
 /// - Response: No response
 /// - Responses to choose from: None, Fault, Trouble, Quick stop by trouble, Warning locked, Warning, Information
 /// - Response set in C14613/1 ... 32
-/// - Cause: One of the nodes 1 ... 32 sent no heartbeat telegram to the module in this slot within the time set.
+/// - Cause: The node of the monitoring entry sent no heartbeat telegram to the module in this slot within the time set.
 /// - Remedy: Reactivate the CAN node: switch the mains off and on, restart the controller (C00002 = 11000) or reset the
 ///   node (C00002 = 92).
-/// - Remedy: Set the monitoring time for the heartbeat producer anew or switch the monitoring off.
+/// - Remedy: Set the heartbeat consumer time of the entry anew (C13385 / C14385) or switch the monitoring off.
 /// - Remedy: Reset the error status if it is still active.
 /// - Remedy: Save the parameter set (C00002 = 11) before you switch the mains or restart the controller.
 /// - Source: EDS94AYCCA-EN-5.0, 12.2 p. 97
@@ -536,17 +537,18 @@ pub const CAN_MODULE_MXI2_EMERGENCY_CONFIGURATION_INCOMPLETE: u32 = 0x00AE_0000;
 
 /// CAN module (MXI2): node guarding error 1 ... 32.
 ///
-/// Cyclic node monitoring; the run holds one number for each of the nodes 1 ... 32.
+/// Cyclic node monitoring; one number for each of the monitoring entries 1 ... 32 of C13386 / C14386, which hold the
+/// addresses of the nodes.
 ///
 /// - Number 0x00AF0000 ... 0x00AF001F
 /// - Response: No response
 /// - Responses to choose from: None, Fault, Trouble, Quick stop by trouble, Warning locked, Warning, Information
 /// - Response set in C14612/1 ... 32
-/// - Cause: One of the nodes 1 ... 32 did not answer a node guarding telegram (RTR) of the master in this slot within
-///   the time set.
+/// - Cause: The node of the monitoring entry did not answer a node guarding telegram (RTR) of the master in this slot
+///   within the time set.
 /// - Remedy: Reactivate the CAN node: switch the mains off and on, restart the controller (C00002 = 11000) or reset the
 ///   node (C00002 = 92).
-/// - Remedy: Set the node guarding time anew or switch the monitoring off.
+/// - Remedy: Set the guard time of the entry anew (C13386 / C14386) or switch the monitoring off.
 /// - Remedy: Reset the error status if it is still active.
 /// - Remedy: Save the parameter set (C00002 = 11) before you switch the mains or restart the controller.
 /// - Source: EDS94AYCCA-EN-5.0, 12.2 p. 98
@@ -789,6 +791,7 @@ const ENTRIES: &[ErrorEntry] = &[
         name: "MXI1: CAN module is missing or is incompatible",
         response: Some("Fault"),
         responses: &["Fault"],
+        adjustable_in: &[CodeRef { number: 615, subcode: Some(2) }],
         origin: Origin::Manual,
         cite: Cite { manual: "EDS94AYCCA-EN-5.0", chapter: "12.2", page: Some(91) },
         errata: &["module-error-not-adjustable", "module-missing-cause"],
@@ -800,6 +803,7 @@ const ENTRIES: &[ErrorEntry] = &[
         name: "MXI2: CAN module is missing or is incompatible",
         response: Some("Fault"),
         responses: &["Fault"],
+        adjustable_in: &[CodeRef { number: 615, subcode: Some(3) }],
         origin: Origin::Manual,
         cite: Cite { manual: "EDS94AYCCA-EN-5.0", chapter: "12.2", page: Some(91) },
         errata: &["module-error-not-adjustable", "module-missing-cause"],
@@ -1466,10 +1470,10 @@ const HELP: &[Help] = &[
         ],
     },
     Help {
-        causes: &["One of the nodes 1 ... 32 sent no heartbeat telegram to the module in this slot within the time set."],
+        causes: &["The node of the monitoring entry sent no heartbeat telegram to the module in this slot within the time set."],
         remedies: &[
             "Reactivate the CAN node: switch the mains off and on, restart the controller (C00002 = 11000) or reset the node (C00002 = 92).",
-            "Set the monitoring time for the heartbeat producer anew or switch the monitoring off.",
+            "Set the heartbeat consumer time of the entry anew (C13385 / C14385) or switch the monitoring off.",
             "Reset the error status if it is still active.",
             "Save the parameter set (C00002 = 11) before you switch the mains or restart the controller.",
         ],
@@ -1500,10 +1504,10 @@ const HELP: &[Help] = &[
         ],
     },
     Help {
-        causes: &["One of the nodes 1 ... 32 did not answer a node guarding telegram (RTR) of the master in this slot within the time set."],
+        causes: &["The node of the monitoring entry did not answer a node guarding telegram (RTR) of the master in this slot within the time set."],
         remedies: &[
             "Reactivate the CAN node: switch the mains off and on, restart the controller (C00002 = 11000) or reset the node (C00002 = 92).",
-            "Set the node guarding time anew or switch the monitoring off.",
+            "Set the guard time of the entry anew (C13386 / C14386) or switch the monitoring off.",
             "Reset the error status if it is still active.",
             "Save the parameter set (C00002 = 11) before you switch the mains or restart the controller.",
         ],
@@ -1673,10 +1677,10 @@ const HELP: &[Help] = &[
         ],
     },
     Help {
-        causes: &["One of the nodes 1 ... 32 sent no heartbeat telegram to the module in this slot within the time set."],
+        causes: &["The node of the monitoring entry sent no heartbeat telegram to the module in this slot within the time set."],
         remedies: &[
             "Reactivate the CAN node: switch the mains off and on, restart the controller (C00002 = 11000) or reset the node (C00002 = 92).",
-            "Set the monitoring time for the heartbeat producer anew or switch the monitoring off.",
+            "Set the heartbeat consumer time of the entry anew (C13385 / C14385) or switch the monitoring off.",
             "Reset the error status if it is still active.",
             "Save the parameter set (C00002 = 11) before you switch the mains or restart the controller.",
         ],
@@ -1707,10 +1711,10 @@ const HELP: &[Help] = &[
         ],
     },
     Help {
-        causes: &["One of the nodes 1 ... 32 did not answer a node guarding telegram (RTR) of the master in this slot within the time set."],
+        causes: &["The node of the monitoring entry did not answer a node guarding telegram (RTR) of the master in this slot within the time set."],
         remedies: &[
             "Reactivate the CAN node: switch the mains off and on, restart the controller (C00002 = 11000) or reset the node (C00002 = 92).",
-            "Set the node guarding time anew or switch the monitoring off.",
+            "Set the guard time of the entry anew (C13386 / C14386) or switch the monitoring off.",
             "Reset the error status if it is still active.",
             "Save the parameter set (C00002 = 11) before you switch the mains or restart the controller.",
         ],

@@ -13,11 +13,9 @@ use crate::types::*;
 /// - Number 0x00C83100
 /// - Response: No response
 /// - Responses to choose from: None
-/// - Cause: The network cable or its plug is damaged.
-/// - Cause: The network cable is not plugged into X201.
-/// - Cause: The supply voltage has failed.
-/// - Remedy: Check cables and terminals.
-/// - Remedy: Plug the network cable into X201.
+/// - Cause: The supply voltage of the drive has failed.
+/// - Cause: As printed, the network cable or its plug at X201; they lead to the master, not to the drive.
+/// - Remedy: Check the supply of the drive, then cables and terminals.
 /// - Source: EDS94AYCPM-EN-12.0, 13.2 p. 88
 /// - Erratum `error-base-device`: printed ... standard device, used ... base device
 /// - Erratum `c13887-bit-7`: printed 14.2, C13887, bit 7: Error message 0x00c88130; 14.3, C14887, bit 7: Error message
@@ -365,11 +363,10 @@ const ENTRIES: &[ErrorEntry] = &[
 const HELP: &[Help] = &[
     Help {
         causes: &[
-            "The network cable or its plug is damaged.",
-            "The network cable is not plugged into X201.",
-            "The supply voltage has failed.",
+            "The supply voltage of the drive has failed.",
+            "As printed, the network cable or its plug at X201; they lead to the master, not to the drive.",
         ],
-        remedies: &["Check cables and terminals.", "Plug the network cable into X201."],
+        remedies: &["Check the supply of the drive, then cables and terminals."],
     },
     Help {
         causes: &["Access to the memory failed."],
