@@ -186,7 +186,8 @@ def _length(field: Field, scope: Values) -> int | None:
     size = dict(field.sizes.sizes).get(by)
     if size is None:
         raise CodecError(f"the length of field '{field.name}' is not known where '{field.sizes.by}' is {by}")
-    return size * (_number(field.sizes.times, scope) if field.sizes.times is not None else 1)
+    size *= _number(field.sizes.times, scope) if field.sizes.times is not None else 1
+    return size if field.sizes.fills is None else -size % field.sizes.fills
 
 
 def _number(name: str, scope: Values) -> int:

@@ -1161,6 +1161,8 @@ def test_layouts(panels: list[tuple[Device, Page]]) -> None:
 def shown_length(field: Field) -> str:
     if field.type is FieldType.GROUP:
         return f"repeats {field.count} times" if field.count else "repeats to the end"
+    if field.sizes and field.sizes.fills:
+        return f"up to a multiple of {field.sizes.fills}"
     if field.sizes:
         return f"by {field.sizes.by}" + (f", times {field.sizes.times}" if field.sizes.times else "")
     return "the rest" if field.length is None else str(field.length)

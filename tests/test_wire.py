@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from generator.check.telegrams import show
-from generator.codec import CodecError, decode
+from generator.codec import CodecError, decode, encode
 from generator.model import DataType, Device, Does, Model, Service
 from generator.wire import Call, Layouts, agree, build, carries, recognise
 
@@ -152,3 +152,24 @@ def test_every_telegram_says_what_it_was_built_from(model: Model, data: st.DataO
         strict=True,
     ):
         assert said in (meant, None)
+
+
+@pytest.mark.parametrize(
+    ("octets", "values"),
+    [
+        # A string of five characters alone, and in front of another value; two bytes; one byte.
+        ("01 01 00 01 09 05 30 31 2E 30 30 00", ["30 31 2E 30 30"]),
+        ("01 01 00 02 09 05 30 31 2E 30 30 00 06 01 12 34", ["30 31 2E 30 30", "12 34"]),
+        ("01 01 00 02 05 02 11 22 06 01 12 34", ["11 22", "12 34"]),
+        ("01 01 00 01 05 01 11 00", ["11"]),
+    ],
+)
+def test_profidrive_fills_an_odd_number_of_bytes(model: Model, octets: str, values: list[str]) -> None:
+    layout = next(layout for device in model.devices for layout in device.layouts if layout.id == "dpv1-read-response")
+    data = tuple(bytes.fromhex(octets))
+    found = decode(layout, data)
+    groups = found["values"]
+    assert isinstance(groups, tuple) and [entry["value"] for entry in groups] == values
+    assert encode(layout, found) == data
+    with pytest.raises(CodecError):
+        decode(layout, data[:-1])

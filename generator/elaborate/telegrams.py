@@ -1,6 +1,7 @@
 """Layouts of telegrams and the manual's examples."""
 
 from collections.abc import Mapping
+from dataclasses import replace
 
 from generator.diagnostics import suggestion
 from generator.elaborate.codes import ErrataIndex
@@ -34,22 +35,23 @@ def _layout(node: Node, errata: ErrataIndex) -> Layout:
 
 def _fields(node: Node, big: bool, known: list[str]) -> tuple[Field, ...]:
     known = list(known)
-    found = []
+    found: list[Field] = []
     for child in node.items("fields"):
         name = str(child.get("name"))
         if name in known:
             child.problems.add("duplicate", child.at("name"), f"the field '{name}' stands twice")
-        found.append(_field(child, name, big, known))
+        found.append(_field(child, name, big, known, {field.name: field.sizes for field in found if field.sizes}))
         known.append(name)
     return tuple(found)
 
 
-def _field(node: Node, name: str, big: bool, known: list[str]) -> Field:
+def _field(node: Node, name: str, big: bool, known: list[str], sized: Mapping[str, Sizes]) -> Field:
+    """A field; ``known`` are the names before it, ``sized`` those beside it whose length depends on others."""
     order = node.get("byte_order")
     kind = FieldType(node.get("type", "uint"))
     sizes = node.child("sizes")
     length = node.get("length")
-    if kind is not FieldType.GROUP and length is None and sizes is None:
+    if kind is not FieldType.GROUP and length is None and sizes is None and "fill" not in node:
         node.problems.add("key-absent", node.where, f"the field '{name}' has no length", hint="add 'length: 2'")
     for key, value in (("length", length if length != _REST else None), ("count", node.get("count"))):
         _known_field(node, key, value, known)
@@ -61,7 +63,7 @@ def _field(node: Node, name: str, big: bool, known: list[str]) -> Field:
         title=str(node.get("title", name)),
         type=kind,
         length=None if length == _REST else length,
-        sizes=_sizes(sizes) if sizes is not None else None,
+        sizes=_sizes(sizes) if sizes is not None else _fill(node.child("fill"), sized),
         count=node.get("count"),
         fields=_fields(node, big, known),
         big=big if order is None else order == "big",
@@ -84,6 +86,17 @@ def _sizes(node: Node) -> Sizes:
     table = node.child("sizes")
     assert table is not None
     return Sizes(str(node.get("by")), tuple((int(k, 0), int(v)) for k, v in table.data.items()), node.get("times"))
+
+
+def _fill(node: Node | None, sized: Mapping[str, Sizes]) -> Sizes | None:
+    if node is None:
+        return None
+    name = str(node.get("of"))
+    if name not in sized:
+        hint = suggestion(name, list(sized), "fields whose length depends on others")
+        node.problems.add("name-unknown", node.at("of"), f"there is no such field '{name}' before it", hint=hint)
+        return None
+    return replace(sized[name], fills=int(node.get("to")))
 
 
 def _bits(node: Node) -> tuple[BitField, ...]:

@@ -495,6 +495,7 @@ def _sizes(field: Field) -> Json | None:
         "by": field.sizes.by,
         "sizes": {str(value): size for value, size in field.sizes.sizes},
         "times": field.sizes.times,
+        "fills": field.sizes.fills,
     }
 
 

@@ -22,11 +22,22 @@ class FieldType(Enum):
 
 @dataclass(frozen=True, slots=True)
 class Sizes:
-    """Length by the value of an earlier field ``by``, times the value of the earlier field ``times``."""
+    """Length by the value of an earlier field ``by``, times the value of the earlier field ``times``.
+
+    ``fills``: the length is what that product lacks of a whole multiple of so many bytes.
+    """
 
     by: str
     sizes: tuple[tuple[int, int], ...]
     times: str | None
+    fills: int | None = None
+
+    @property
+    def longest(self) -> int | None:
+        """Most bytes, ``None`` where another field multiplies them."""
+        if self.fills is not None:
+            return self.fills - 1
+        return None if self.times is not None else max((size for _, size in self.sizes), default=0)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -18,7 +18,9 @@
     if (field.sizes) {
       const by = number(field.sizes.by, scope);
       const size = field.sizes.of[by] ?? fail(`the length of field '${field.name}' is not known where '${field.sizes.by}' is ${by}`);
-      return size * (field.sizes.times ? Number(number(field.sizes.times, scope)) : 1);
+      const whole = size * (field.sizes.times ? Number(number(field.sizes.times, scope)) : 1);
+      const to = field.sizes.fills;
+      return to ? (to - (whole % to)) % to : whole;
     }
     return typeof field.length === "string" ? Number(number(field.length, scope)) : field.length;
   }

@@ -16,18 +16,10 @@ _SIZES_1 = {
 }
 
 _SIZES_2 = {
-    2: 1, 3: 0, 4: 0, 5: 1, 6: 0, 7: 0, 9: 0, 10: 0, 64: 0, 65: 1, 66: 0, 67: 0,
-}
-
-_SIZES_3 = {
     2: 1, 3: 2, 4: 4, 5: 1, 6: 2, 7: 4, 9: 1, 10: 1, 64: 0, 65: 1, 66: 2, 67: 4, 68: 2,
 }
 
-_SIZES_4 = {
-    2: 1, 3: 0, 4: 0, 5: 1, 6: 0, 7: 0, 9: 0, 10: 0, 64: 0, 65: 1, 66: 0, 67: 0, 68: 0,
-}
-
-_SIZES_5 = {
+_SIZES_3 = {
     64: 0, 68: 2,
 }
 
@@ -889,8 +881,8 @@ class Dpv1ReadResponseValues(base.Fields):
     fill: Final = 0
     """0x00.
 
-    Fills a single value of one byte up to a word (9.3.3, page 60). PROFIdrive fills up any odd number of bytes,
-    also that of a string, and nothing where the number is even; the layout holds the case that the manual prints.
+    Fills an odd number of bytes up to a word, as in PROFIdrive; the manual has a single value of one byte (9.3.3,
+    page 60).
     """
 
     def __init__(
@@ -982,7 +974,7 @@ class Dpv1ReadResponse(base.Telegram):
                 raise base.short(size - (at + 2), ("value", length))
             value = data[at + 2:at + 2 + length]
             at = at + 2 + length
-            length = base.sized(_SIZES_2, format, "fill", "format", base.DecodeError)
+            length = -base.sized(_SIZES_1, format, "fill", "format", base.DecodeError) * number_of_values % 2
             if length > size - at:
                 raise base.short(size - at, ("fill", length))
             found = int.from_bytes(data[at:at + length], "big")
@@ -1013,7 +1005,7 @@ class Dpv1ReadResponse(base.Telegram):
             data += base.number(values.number_of_values, 1, "big", False, "number_of_values")
             length = base.sized(_SIZES_1, values.format, "value", "format", base.EncodeError) * values.number_of_values
             data += base.octets(values.value, length, "value")
-            length = base.sized(_SIZES_2, values.format, "fill", "format", base.EncodeError)
+            length = -base.sized(_SIZES_1, values.format, "fill", "format", base.EncodeError) * values.number_of_values % 2
             data += base.number(values.fill, length, "big", False, "fill")
         return bytes(data)
 
@@ -1046,8 +1038,8 @@ class Dpv1ReadErrorResults(base.Fields):
     fill: Final = 0
     """0x00.
 
-    Fills a single value of one byte up to a word (9.3.3, page 60). PROFIdrive fills up any odd number of bytes,
-    also that of a string, and nothing where the number is even; the layout holds the case that the manual prints.
+    Fills an odd number of bytes up to a word, as in PROFIdrive; the manual has a single value of one byte (9.3.3,
+    page 60).
     """
 
     def __init__(
@@ -1135,12 +1127,12 @@ class Dpv1ReadError(base.Telegram):
                 raise base.short(size - at, ("format", 1), ("number_of_values", 1))
             format = data[at]
             number_of_values = data[at + 1]
-            length = base.sized(_SIZES_3, format, "value", "format", base.DecodeError) * number_of_values
+            length = base.sized(_SIZES_2, format, "value", "format", base.DecodeError) * number_of_values
             if length > size - (at + 2):
                 raise base.short(size - (at + 2), ("value", length))
             value = data[at + 2:at + 2 + length]
             at = at + 2 + length
-            length = base.sized(_SIZES_4, format, "fill", "format", base.DecodeError)
+            length = -base.sized(_SIZES_2, format, "fill", "format", base.DecodeError) * number_of_values % 2
             if length > size - at:
                 raise base.short(size - at, ("fill", length))
             found = int.from_bytes(data[at:at + length], "big")
@@ -1170,9 +1162,9 @@ class Dpv1ReadError(base.Telegram):
         for results in self.results:
             data += base.number(results.format, 1, "big", False, "format")
             data += base.number(results.number_of_values, 1, "big", False, "number_of_values")
-            length = base.sized(_SIZES_3, results.format, "value", "format", base.EncodeError) * results.number_of_values
+            length = base.sized(_SIZES_2, results.format, "value", "format", base.EncodeError) * results.number_of_values
             data += base.octets(results.value, length, "value")
-            length = base.sized(_SIZES_4, results.format, "fill", "format", base.EncodeError)
+            length = -base.sized(_SIZES_2, results.format, "fill", "format", base.EncodeError) * results.number_of_values % 2
             data += base.number(results.fill, length, "big", False, "fill")
         return bytes(data)
 
@@ -1250,8 +1242,8 @@ class Dpv1WriteRequestValues(base.Fields):
     fill: Final = 0
     """0x00.
 
-    Fills a single value of one byte up to a word (9.3.3, page 60). PROFIdrive fills up any odd number of bytes,
-    also that of a string, and nothing where the number is even; the layout holds the case that the manual prints.
+    Fills an odd number of bytes up to a word, as in PROFIdrive; the manual has a single value of one byte (9.3.3,
+    page 60).
     """
 
     def __init__(
@@ -1368,7 +1360,7 @@ class Dpv1WriteRequest(base.Telegram):
                 raise base.short(size - (at + 2), ("value", length))
             value = data[at + 2:at + 2 + length]
             at = at + 2 + length
-            length = base.sized(_SIZES_2, format, "fill", "format", base.DecodeError)
+            length = -base.sized(_SIZES_1, format, "fill", "format", base.DecodeError) * number_of_values % 2
             if length > size - at:
                 raise base.short(size - at, ("fill", length))
             found = int.from_bytes(data[at:at + length], "big")
@@ -1406,7 +1398,7 @@ class Dpv1WriteRequest(base.Telegram):
             data += base.number(values.number_of_values, 1, "big", False, "number_of_values")
             length = base.sized(_SIZES_1, values.format, "value", "format", base.EncodeError) * values.number_of_values
             data += base.octets(values.value, length, "value")
-            length = base.sized(_SIZES_2, values.format, "fill", "format", base.EncodeError)
+            length = -base.sized(_SIZES_1, values.format, "fill", "format", base.EncodeError) * values.number_of_values % 2
             data += base.number(values.fill, length, "big", False, "fill")
         return bytes(data)
 
@@ -1599,7 +1591,7 @@ class Dpv1WriteError(base.Telegram):
                 raise base.short(size - at, ("format", 1), ("number_of_values", 1))
             format = data[at]
             number_of_values = data[at + 1]
-            length = base.sized(_SIZES_5, format, "value", "format", base.DecodeError) * number_of_values
+            length = base.sized(_SIZES_3, format, "value", "format", base.DecodeError) * number_of_values
             if length > size - (at + 2):
                 raise base.short(size - (at + 2), ("value", length))
             value = data[at + 2:at + 2 + length]
@@ -1627,7 +1619,7 @@ class Dpv1WriteError(base.Telegram):
         for results in self.results:
             data += base.number(results.format, 1, "big", False, "format")
             data += base.number(results.number_of_values, 1, "big", False, "number_of_values")
-            length = base.sized(_SIZES_5, results.format, "value", "format", base.EncodeError) * results.number_of_values
+            length = base.sized(_SIZES_3, results.format, "value", "format", base.EncodeError) * results.number_of_values
             data += base.octets(results.value, length, "value")
         return bytes(data)
 

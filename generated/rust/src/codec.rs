@@ -414,6 +414,11 @@ impl<'b> Writer<'b> {
     }
 }
 
+/// What `size` bytes for each of `times` lack of a whole multiple of `to` bytes.
+pub(crate) fn missing(size: Option<usize>, times: usize, to: usize) -> Option<usize> {
+    Some((to - size?.saturating_mul(times) % to) % to)
+}
+
 /// Bits of a number with its sign in `length` bytes, where it fits them.
 pub(crate) fn unsigned(field: &'static str, number: i64, length: usize) -> Result<u64, EncodeError> {
     let bits = if length == 0 { 0 } else { number as u64 & (u64::MAX >> (u64::BITS - 8 * length as u32)) };

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 
 from generator.codec import decode, encode
 from generator.emit.c.device import device_prefix
@@ -74,8 +75,9 @@ class Step:
     """How a field is read and written.
 
     ``kind``: "number", "constant", "bytes" or "group".  ``length``: expression, "" up to the end; ``table`` and
-    ``times`` come before it where the length depends on other fields.  ``value`` and ``negative``: a constant in two's
-    complement.  ``element``: names of a group's elements; ``outers``: what their functions get of what is around.
+    ``times`` come before it where the length depends on other fields, ``fills`` where it fills them up.  ``value`` and
+    ``negative``: a constant in two's complement.  ``element``: names of a group's elements; ``outers``: what their
+    functions get of what is around.
     """
 
     kind: str
@@ -87,6 +89,7 @@ class Step:
     length: str = ""
     table: str = ""
     times: str = ""
+    fills: str = ""
     value: str = ""
     negative: str = "false"
     element: str = ""
@@ -307,16 +310,18 @@ class _Builder:
         if field.type is FieldType.GROUP:
             return self._group(field, levels, used)
         table, times, length = self._length(field, levels, used, tables)
+        fills = integer(field.sizes.fills, 16) if field.sizes is not None and field.sizes.fills is not None else ""
+        step = partial(Step, name=name, big=big, length=length, table=table, times=times, fills=fills)
         if field.constant is not None:
             value = integer(field.constant % (1 << _WIDTHS[-1]), _WIDTHS[-1], hexadecimal=True)
             negative = "true" if field.constant < 0 else "false"
-            return Step("constant", name, big, length=length, table=table, times=times, value=value, negative=negative)
+            return step("constant", value=value, negative=negative)
         width = number_width(field)
         if width is None:
-            return Step("bytes", name, big, "drivespec_slice", text, length=length, table=table, times=times)
+            return step("bytes", member_type="drivespec_slice", comment=text)
         signed = field.type is FieldType.INT
         kind = f"{'' if signed else 'u'}int{width}_t"
-        return Step("number", name, big, kind, text, signed, length, table, times)
+        return step("number", member_type=kind, comment=text, signed=signed)
 
     def _group(self, field: Field, levels: tuple[_Level, ...], used: set[int]) -> Step:
         stem = f"{levels[-1].stem}_{field.name}"
@@ -393,7 +398,7 @@ def number_width(field: Field) -> int | None:
     if field.type not in (FieldType.UINT, FieldType.INT):
         return None
     if field.sizes is not None:
-        longest = None if field.sizes.times is not None else max((size for _, size in field.sizes.sizes), default=0)
+        longest = field.sizes.longest
     else:
         longest = field.length if isinstance(field.length, int) else None
     return None if longest is None or longest > _LARGEST else _width(8 * longest)
@@ -409,7 +414,7 @@ def _extent(fields: Sequence[Field]) -> tuple[int, bool]:
     for field in fields:
         if isinstance(field.length, int):
             least += field.length
-        elif field.sizes is not None and field.sizes.times is None:
+        elif field.sizes is not None and field.sizes.times is None and field.sizes.fills is None:
             sizes = [size for _, size in field.sizes.sizes]
             least += min(sizes)
             fixed = fixed and len(set(sizes)) == 1

@@ -32,6 +32,7 @@ from generator.model import (
     Option,
     Range,
     Service,
+    Sizes,
     Slot,
     SubIndex,
     What,
@@ -227,7 +228,7 @@ def _field(field: Field) -> _Json:
         "count": field.count,
     } | _without_none(
         {
-            "sizes": {"by": sizes.by, "of": dict(sizes.sizes), "times": sizes.times} if sizes else None,
+            "sizes": _sizes(sizes) if sizes else None,
             "fields": list(map(_field, field.fields)),
             "constant": None if field.constant is None else [field.constant],
             "values": _options(field.values),
@@ -235,6 +236,10 @@ def _field(field: Field) -> _Json:
             "parts": {name: _options(options) for name, options in field.bit_values},
         }
     )
+
+
+def _sizes(sizes: Sizes) -> _Json:
+    return {"by": sizes.by, "of": dict(sizes.sizes), "times": sizes.times, "fills": sizes.fills}
 
 
 def _options(options: Sequence[Option]) -> list[tuple[int, str]]:

@@ -87,6 +87,8 @@ def _field_rows(links: Links, layout: Layout, fields: Sequence[Field], path: str
 def _length(field: Field) -> str:
     if field.type is FieldType.GROUP:
         return f"repeats {field.count} times" if field.count is not None else "repeats to the end"
+    if field.sizes is not None and field.sizes.fills is not None:
+        return f"up to a multiple of {field.sizes.fills}"
     if field.sizes is not None:
         times = f", times {field.sizes.times}" if field.sizes.times is not None else ""
         return f"by {field.sizes.by}{times}"

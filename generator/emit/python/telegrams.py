@@ -220,7 +220,9 @@ class _Coder:
         by = field.sizes.by
         table, value = self._table(field.sizes.sizes), self._known(field, by, scope)
         size = f"base.sized({table}, {value}, {literal(field.name)}, {literal(by)}, base.{self.error})"
-        return size if field.sizes.times is None else f"{size} * {self._known(field, field.sizes.times, scope)}"
+        if field.sizes.times is not None:
+            size = f"{size} * {self._known(field, field.sizes.times, scope)}"
+        return size if field.sizes.fills is None else f"-{size} % {field.sizes.fills}"
 
     @staticmethod
     def _known(field: Field, name: str, scope: Names) -> str:

@@ -172,7 +172,7 @@ def _check(field: Field, known: set[str]) -> None:
         )
     if field.type in _NUMBERS:
         longest = _longest(field)
-        if longest is None or longest > _WIDTHS[-1] // 8 or (field.sizes and field.sizes.times):
+        if longest is None or longest > _WIDTHS[-1] // 8:
             raise EmitError(
                 "telegram-field",
                 field.where,
@@ -183,7 +183,7 @@ def _check(field: Field, known: set[str]) -> None:
 
 def _longest(field: Field) -> int | None:
     if field.sizes:
-        return max((size for _, size in field.sizes.sizes), default=0)
+        return field.sizes.longest
     return field.length if isinstance(field.length, int) else None
 
 
@@ -298,6 +298,8 @@ def _value(field: Field, receiver: str) -> str:
 
 def _length(field: Field, known: dict[str, Field], receiver: str) -> str:
     """Argument that tells the number of bytes of a field, or of the values in it where each has a length by itself."""
+    if field.sizes and field.sizes.fills is not None:
+        return "1"
     name = field.sizes.times if field.sizes else field.length
     if isinstance(name, str):
         return f"codec::length({_value(known[name], receiver)})"
@@ -309,7 +311,11 @@ def _size_of(field: Field, size: str, known: dict[str, Field], receiver: str) ->
     if field.sizes is None:
         return "", []
     variable = _free("size", {field_name(other) for other in known.values()})
-    return variable, [f"let {variable} = {size}({_value(known[field.sizes.by], receiver)});"]
+    lines = [f"let {variable} = {size}({_value(known[field.sizes.by], receiver)});"]
+    if field.sizes.fills is not None:
+        times = "1" if field.sizes.times is None else f"codec::length({_value(known[field.sizes.times], receiver)})"
+        lines.append(f"let {variable} = codec::missing({variable}, {times}, {field.sizes.fills});")
+    return variable, lines
 
 
 def _read(field: Field, reader: str, size: str, known: dict[str, Field]) -> list[str]:

@@ -1423,18 +1423,22 @@ static inline bool e94aycpm_dpv1_read_response_values_fill_size(uint64_t value, 
     switch (value) {
     case UINT64_C(0x0000000000000002):
     case UINT64_C(0x0000000000000005):
+    case UINT64_C(0x0000000000000009):
+    case UINT64_C(0x000000000000000A):
     case UINT64_C(0x0000000000000041):
         *size = 1u;
         return true;
     case UINT64_C(0x0000000000000003):
-    case UINT64_C(0x0000000000000004):
     case UINT64_C(0x0000000000000006):
-    case UINT64_C(0x0000000000000007):
-    case UINT64_C(0x0000000000000009):
-    case UINT64_C(0x000000000000000A):
-    case UINT64_C(0x0000000000000040):
     case UINT64_C(0x0000000000000042):
+        *size = 2u;
+        return true;
+    case UINT64_C(0x0000000000000004):
+    case UINT64_C(0x0000000000000007):
     case UINT64_C(0x0000000000000043):
+        *size = 4u;
+        return true;
+    case UINT64_C(0x0000000000000040):
         *size = 0u;
         return true;
     default:
@@ -1466,6 +1470,8 @@ static inline drivespec_status e94aycpm_dpv1_read_response_values_read(drivespec
     if (!e94aycpm_dpv1_read_response_values_fill_size((uint64_t)telegram->format, &length)) {
         return DRIVESPEC_UNKNOWN_SIZE;
     }
+    length = drivespec_product(length, (uint64_t)telegram->number_of_values);
+    length = (2u - length % 2u) % 2u;
     if (!drivespec_take(rest, length, &part)) {
         return DRIVESPEC_TRUNCATED;
     }
@@ -1516,6 +1522,8 @@ static inline drivespec_status e94aycpm_dpv1_read_response_values_write(const e9
     if (!e94aycpm_dpv1_read_response_values_fill_size((uint64_t)telegram->format, &length)) {
         return DRIVESPEC_UNKNOWN_SIZE;
     }
+    length = drivespec_product(length, (uint64_t)telegram->number_of_values);
+    length = (2u - length % 2u) % 2u;
     status = drivespec_put_constant(to, length, UINT64_C(0x0000000000000000), false, true);
     if (status != DRIVESPEC_OK) {
         return status;
@@ -1742,19 +1750,23 @@ static inline bool e94aycpm_dpv1_read_error_results_fill_size(uint64_t value, ui
     switch (value) {
     case UINT64_C(0x0000000000000002):
     case UINT64_C(0x0000000000000005):
+    case UINT64_C(0x0000000000000009):
+    case UINT64_C(0x000000000000000A):
     case UINT64_C(0x0000000000000041):
         *size = 1u;
         return true;
     case UINT64_C(0x0000000000000003):
-    case UINT64_C(0x0000000000000004):
     case UINT64_C(0x0000000000000006):
-    case UINT64_C(0x0000000000000007):
-    case UINT64_C(0x0000000000000009):
-    case UINT64_C(0x000000000000000A):
-    case UINT64_C(0x0000000000000040):
     case UINT64_C(0x0000000000000042):
-    case UINT64_C(0x0000000000000043):
     case UINT64_C(0x0000000000000044):
+        *size = 2u;
+        return true;
+    case UINT64_C(0x0000000000000004):
+    case UINT64_C(0x0000000000000007):
+    case UINT64_C(0x0000000000000043):
+        *size = 4u;
+        return true;
+    case UINT64_C(0x0000000000000040):
         *size = 0u;
         return true;
     default:
@@ -1786,6 +1798,8 @@ static inline drivespec_status e94aycpm_dpv1_read_error_results_read(drivespec_s
     if (!e94aycpm_dpv1_read_error_results_fill_size((uint64_t)telegram->format, &length)) {
         return DRIVESPEC_UNKNOWN_SIZE;
     }
+    length = drivespec_product(length, (uint64_t)telegram->number_of_values);
+    length = (2u - length % 2u) % 2u;
     if (!drivespec_take(rest, length, &part)) {
         return DRIVESPEC_TRUNCATED;
     }
@@ -1836,6 +1850,8 @@ static inline drivespec_status e94aycpm_dpv1_read_error_results_write(const e94a
     if (!e94aycpm_dpv1_read_error_results_fill_size((uint64_t)telegram->format, &length)) {
         return DRIVESPEC_UNKNOWN_SIZE;
     }
+    length = drivespec_product(length, (uint64_t)telegram->number_of_values);
+    length = (2u - length % 2u) % 2u;
     status = drivespec_put_constant(to, length, UINT64_C(0x0000000000000000), false, true);
     if (status != DRIVESPEC_OK) {
         return status;
@@ -2147,18 +2163,22 @@ static inline bool e94aycpm_dpv1_write_request_values_fill_size(uint64_t value, 
     switch (value) {
     case UINT64_C(0x0000000000000002):
     case UINT64_C(0x0000000000000005):
+    case UINT64_C(0x0000000000000009):
+    case UINT64_C(0x000000000000000A):
     case UINT64_C(0x0000000000000041):
         *size = 1u;
         return true;
     case UINT64_C(0x0000000000000003):
-    case UINT64_C(0x0000000000000004):
     case UINT64_C(0x0000000000000006):
-    case UINT64_C(0x0000000000000007):
-    case UINT64_C(0x0000000000000009):
-    case UINT64_C(0x000000000000000A):
-    case UINT64_C(0x0000000000000040):
     case UINT64_C(0x0000000000000042):
+        *size = 2u;
+        return true;
+    case UINT64_C(0x0000000000000004):
+    case UINT64_C(0x0000000000000007):
     case UINT64_C(0x0000000000000043):
+        *size = 4u;
+        return true;
+    case UINT64_C(0x0000000000000040):
         *size = 0u;
         return true;
     default:
@@ -2190,6 +2210,8 @@ static inline drivespec_status e94aycpm_dpv1_write_request_values_read(drivespec
     if (!e94aycpm_dpv1_write_request_values_fill_size((uint64_t)telegram->format, &length)) {
         return DRIVESPEC_UNKNOWN_SIZE;
     }
+    length = drivespec_product(length, (uint64_t)telegram->number_of_values);
+    length = (2u - length % 2u) % 2u;
     if (!drivespec_take(rest, length, &part)) {
         return DRIVESPEC_TRUNCATED;
     }
@@ -2240,6 +2262,8 @@ static inline drivespec_status e94aycpm_dpv1_write_request_values_write(const e9
     if (!e94aycpm_dpv1_write_request_values_fill_size((uint64_t)telegram->format, &length)) {
         return DRIVESPEC_UNKNOWN_SIZE;
     }
+    length = drivespec_product(length, (uint64_t)telegram->number_of_values);
+    length = (2u - length % 2u) % 2u;
     status = drivespec_put_constant(to, length, UINT64_C(0x0000000000000000), false, true);
     if (status != DRIVESPEC_OK) {
         return status;

@@ -1103,7 +1103,8 @@ impl<'a> Layout<'a> for Dpv1ReadResponseValuesEntry<'a> {
         let number_of_values = u8::from_be_bytes(reader.array("number_of_values")?);
         let size = dpv1_read_response_values_entry_value_size(format);
         let value = reader.sized("value", size, codec::length(number_of_values))?;
-        let size = dpv1_read_response_values_entry_fill_size(format);
+        let size = dpv1_read_response_values_entry_value_size(format);
+        let size = codec::missing(size, codec::length(number_of_values), 2);
         if codec::big(reader.sized("fill", size, 1)?) as u8 != Self::FILL {
             return Err(DecodeError::Constant("fill"));
         }
@@ -1117,7 +1118,8 @@ impl<'a> Layout<'a> for Dpv1ReadResponseValuesEntry<'a> {
         writer.bytes(&self.number_of_values.to_be_bytes())?;
         let size = dpv1_read_response_values_entry_value_size(self.format);
         writer.sized("value", self.value, size, codec::length(self.number_of_values))?;
-        let size = dpv1_read_response_values_entry_fill_size(self.format);
+        let size = dpv1_read_response_values_entry_value_size(self.format);
+        let size = codec::missing(size, codec::length(self.number_of_values), 2);
         let size = size.ok_or(EncodeError::UnknownSize("fill"))?;
         writer.big("fill", u64::from(Self::FILL), size)?;
         Ok(writer.used())
@@ -1163,8 +1165,8 @@ impl<'a> Dpv1ReadResponseValuesEntry<'a> {
 
     /// 0x00.
     ///
-    /// Fills a single value of one byte up to a word (9.3.3, page 60). PROFIdrive fills up any odd number of bytes,
-    /// also that of a string, and nothing where the number is even; the layout holds the case that the manual prints.
+    /// Fills an odd number of bytes up to a word, as in PROFIdrive; the manual has a single value of one byte (9.3.3,
+    /// page 60).
     pub const FILL: u8 = 0x00;
 }
 
@@ -1271,7 +1273,8 @@ impl<'a> Layout<'a> for Dpv1ReadErrorResultsEntry<'a> {
         let number_of_values = u8::from_be_bytes(reader.array("number_of_values")?);
         let size = dpv1_read_error_results_entry_value_size(format);
         let value = reader.sized("value", size, codec::length(number_of_values))?;
-        let size = dpv1_read_error_results_entry_fill_size(format);
+        let size = dpv1_read_error_results_entry_value_size(format);
+        let size = codec::missing(size, codec::length(number_of_values), 2);
         if codec::big(reader.sized("fill", size, 1)?) as u8 != Self::FILL {
             return Err(DecodeError::Constant("fill"));
         }
@@ -1285,7 +1288,8 @@ impl<'a> Layout<'a> for Dpv1ReadErrorResultsEntry<'a> {
         writer.bytes(&self.number_of_values.to_be_bytes())?;
         let size = dpv1_read_error_results_entry_value_size(self.format);
         writer.sized("value", self.value, size, codec::length(self.number_of_values))?;
-        let size = dpv1_read_error_results_entry_fill_size(self.format);
+        let size = dpv1_read_error_results_entry_value_size(self.format);
+        let size = codec::missing(size, codec::length(self.number_of_values), 2);
         let size = size.ok_or(EncodeError::UnknownSize("fill"))?;
         writer.big("fill", u64::from(Self::FILL), size)?;
         Ok(writer.used())
@@ -1334,8 +1338,8 @@ impl<'a> Dpv1ReadErrorResultsEntry<'a> {
 
     /// 0x00.
     ///
-    /// Fills a single value of one byte up to a word (9.3.3, page 60). PROFIdrive fills up any odd number of bytes,
-    /// also that of a string, and nothing where the number is even; the layout holds the case that the manual prints.
+    /// Fills an odd number of bytes up to a word, as in PROFIdrive; the manual has a single value of one byte (9.3.3,
+    /// page 60).
     pub const FILL: u8 = 0x00;
 }
 
@@ -1497,7 +1501,8 @@ impl<'a> Layout<'a> for Dpv1WriteRequestValuesEntry<'a> {
         let number_of_values = u8::from_be_bytes(reader.array("number_of_values")?);
         let size = dpv1_read_response_values_entry_value_size(format);
         let value = reader.sized("value", size, codec::length(number_of_values))?;
-        let size = dpv1_read_response_values_entry_fill_size(format);
+        let size = dpv1_read_response_values_entry_value_size(format);
+        let size = codec::missing(size, codec::length(number_of_values), 2);
         if codec::big(reader.sized("fill", size, 1)?) as u8 != Self::FILL {
             return Err(DecodeError::Constant("fill"));
         }
@@ -1511,7 +1516,8 @@ impl<'a> Layout<'a> for Dpv1WriteRequestValuesEntry<'a> {
         writer.bytes(&self.number_of_values.to_be_bytes())?;
         let size = dpv1_read_response_values_entry_value_size(self.format);
         writer.sized("value", self.value, size, codec::length(self.number_of_values))?;
-        let size = dpv1_read_response_values_entry_fill_size(self.format);
+        let size = dpv1_read_response_values_entry_value_size(self.format);
+        let size = codec::missing(size, codec::length(self.number_of_values), 2);
         let size = size.ok_or(EncodeError::UnknownSize("fill"))?;
         writer.big("fill", u64::from(Self::FILL), size)?;
         Ok(writer.used())
@@ -1557,8 +1563,8 @@ impl<'a> Dpv1WriteRequestValuesEntry<'a> {
 
     /// 0x00.
     ///
-    /// Fills a single value of one byte up to a word (9.3.3, page 60). PROFIdrive fills up any odd number of bytes,
-    /// also that of a string, and nothing where the number is even; the layout holds the case that the manual prints.
+    /// Fills an odd number of bytes up to a word, as in PROFIdrive; the manual has a single value of one byte (9.3.3,
+    /// page 60).
     pub const FILL: u8 = 0x00;
 }
 
@@ -2363,25 +2369,6 @@ const fn dpv1_read_response_values_entry_value_size(value: u8) -> Option<usize> 
 }
 
 /// Bytes of one value, `None` where the manual gives no length.
-const fn dpv1_read_response_values_entry_fill_size(value: u8) -> Option<usize> {
-    Some(match value {
-        0x02 => 1,
-        0x03 => 0,
-        0x04 => 0,
-        0x05 => 1,
-        0x06 => 0,
-        0x07 => 0,
-        0x09 => 0,
-        0x0A => 0,
-        0x40 => 0,
-        0x41 => 1,
-        0x42 => 0,
-        0x43 => 0,
-        _ => return None,
-    })
-}
-
-/// Bytes of one value, `None` where the manual gives no length.
 const fn dpv1_read_error_results_entry_value_size(value: u8) -> Option<usize> {
     Some(match value {
         0x02 => 1,
@@ -2397,26 +2384,6 @@ const fn dpv1_read_error_results_entry_value_size(value: u8) -> Option<usize> {
         0x42 => 2,
         0x43 => 4,
         0x44 => 2,
-        _ => return None,
-    })
-}
-
-/// Bytes of one value, `None` where the manual gives no length.
-const fn dpv1_read_error_results_entry_fill_size(value: u8) -> Option<usize> {
-    Some(match value {
-        0x02 => 1,
-        0x03 => 0,
-        0x04 => 0,
-        0x05 => 1,
-        0x06 => 0,
-        0x07 => 0,
-        0x09 => 0,
-        0x0A => 0,
-        0x40 => 0,
-        0x41 => 1,
-        0x42 => 0,
-        0x43 => 0,
-        0x44 => 0,
         _ => return None,
     })
 }
