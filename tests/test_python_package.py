@@ -552,7 +552,9 @@ def test_code_lookups(pairs: list[tuple[Any, Device]]) -> None:
                 assert module.index_code(code.index) == code.number
                 for slot in device.slots:
                     twin = code.number if code.slot is None else numbers[code.twin_of, slot.name]
-                    assert module.code_index(code.twin_of, slot.name) == device.drive.index_base - twin
+                    for number in (code.number, code.twin_of):
+                        assert module.code_index(number, slot.name) == device.drive.index_base - twin
+                        assert module.code_index(number, slot.name) == module.code(number, slot.name).index
         unknown = max((code.number for code in device.codes), default=0) + 1
         with pytest.raises(LookupError, match=f"no code C{unknown:05d}"):
             module.code(unknown)
@@ -568,6 +570,11 @@ def test_code_lookups(pairs: list[tuple[Any, Device]]) -> None:
                 for function in (module.code_index, module.index_code):
                     with pytest.raises(ValueError, match=str(wrong)):
                         function(wrong)
+            for slot_name in (None, *(slot.name for slot in device.slots)):
+                with pytest.raises(TypeError, match="float"):
+                    module.code_index(1.5, slot_name)
+            with pytest.raises(TypeError, match="float"):
+                module.index_code(1.5)
 
 
 def test_codes_behind_an_index(pairs: list[tuple[Any, Device]]) -> None:
