@@ -682,7 +682,7 @@ def test_error_numbers_come_apart(pairs: list[tuple[Any, Device]]) -> None:
 
 
 def test_values_and_numbers_on_the_bus(pairs: list[tuple[Any, Device]], package: Any) -> None:
-    """Value times scaling within range and type; what lies between two numbers or outside is refused."""
+    """Value times scaling, rounded, within range and type; what lies outside is refused before it is rounded."""
     scaled = 0
     for module, device in pairs:
         for code in device.codes:
@@ -702,6 +702,9 @@ def test_values_and_numbers_on_the_bus(pairs: list[tuple[Any, Device]], package:
                     assert record.from_wire(record.to_wire(bound)) == bound
                 with pytest.raises(ValueError, match=r"outside|not fit"):
                     record.to_wire(bound + step)
+                if code.range is not None:
+                    with pytest.raises(ValueError, match="outside"):
+                        record.to_wire(bound + Fraction(step, 10 * scaling))
             for raw in (code.data_type.lowest - 1, code.data_type.highest + 1):
                 with pytest.raises(ValueError, match="does not fit"):
                     record.from_wire(raw)
@@ -714,14 +717,25 @@ def test_values_and_numbers_on_the_bus(pairs: list[tuple[Any, Device]], package:
                     value = finer.from_wire(min(raw, code.data_type.highest))
                     assert finer.to_wire(value) == min(raw, code.data_type.highest)
                     assert finer.to_wire(Decimal(value.numerator) / value.denominator) == finer.to_wire(value)
-                for between in (Fraction(1, 2 * factor), 0.5 / factor):
-                    with pytest.raises(ValueError, match=f"no multiple of 1/{factor}"):
-                        finer.to_wire(between)
+                for tenths, nearest in ((14, 1), (15, 2), (16, 2), (25, 3), (4, 0)):
+                    value = Fraction(tenths, 10 * factor)
+                    assert finer.to_wire(value) == finer.to_wire(float(value)) == nearest
+                    if lowest < 0:
+                        assert finer.to_wire(-value) == finer.to_wire(-float(value)) == -nearest
+                with pytest.raises(ValueError, match="not fit"):
+                    finer.to_wire(Fraction(2 * highest + 1, 2 * factor))
+                assert finer.to_wire(Fraction(10 * highest + 4, 10 * factor)) == highest
                 scaled += 1
             assert replace(record, scaling=10, range=None).to_wire(10.2) == 102
-            for nothing in (float("nan"), float("inf"), "x"):
-                with pytest.raises(ValueError, match=r"nan|inf|'x'"):
+            for nothing in (float("nan"), float("inf"), Decimal("nan"), Decimal("inf")):
+                with pytest.raises(ValueError, match=r"(?i)nan|inf"):
                     record.to_wire(nothing)
+            for other in ("x", "1000", True, None, b"1"):
+                with pytest.raises(TypeError, match=r"no number|Rational"):
+                    record.to_wire(other)
+            for fraction in ("1000", 1.5, Fraction(1, 2)):
+                with pytest.raises(TypeError, match="integer"):
+                    record.from_wire(fraction)
     for wrong in (0, 128):
         with pytest.raises(ValueError, match="no node address"):
             package.NodeRelative(0x180).at(wrong)
