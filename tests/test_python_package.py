@@ -804,7 +804,9 @@ def test_patterns_fit_where_both_say_the_same(package: Any) -> None:
     """What one of two patterns leaves out may be anything; what both say has to be equal."""
     of = package.Pattern.of
     alike = [("flash 2", "flash 2, 1 s off"), ("blink", "blink 0.2 s"), ("on", "on green"), ("any", "flash 3")]
+    alike += [("flash", "flash 2, 1 s off"), ("flash red", "flash 3"), ("on_or_flicker", "flicker")]
     unlike = [("flash 2", "flash 3, 1 s off"), ("blink 1 s", "blink 0.2 s"), ("on red", "on green"), ("on", "off")]
+    unlike += [("flash", "blink"), ("on_or_flicker", "blink")]
     for pairs_, expected in ((alike, True), (unlike, False)):
         for first, second in pairs_:
             assert of(first).fits(of(second)) is of(second).fits(of(first)) is expected
@@ -812,6 +814,7 @@ def test_patterns_fit_where_both_say_the_same(package: Any) -> None:
 
 def test_indicators(pairs: list[tuple[Any, Device]], package: Any) -> None:
     """Every fact of every table of LEDs; what a row shows leads to the rows that an observer could mean."""
+    unknown = 0
     for module, device in pairs:
         assert list(module.INDICATORS) == [table.id for table in device.indicators]
         for table in device.indicators:
@@ -836,9 +839,22 @@ def test_indicators(pairs: list[tuple[Any, Device]], package: Any) -> None:
             assert record.states({led.label: "flash 9" for led in record.leds}) == ()
             with pytest.raises(LookupError, match="no LED 'nonsense'"):
                 record.states({"nonsense": "on"})
-            for wrong in ("", "glow", "on 3", "flash 1.5", "blink 1 2", "blink red green"):
-                with pytest.raises(ValueError, match=r"no pattern|invalid literal|Invalid literal"):
+            for led in record.leds:
+                assert record.states({led.label: f"on {led.colour}"}) == record.states({led.label: "on"})
+                assert record.states({led.label: f"blink {led.colour}"}) == record.states({led.label: "blink"})
+                for colour in {other.colour for table in device.indicators for other in table.leds} - {led.colour}:
+                    assert record.states({led.label: f"on {colour}"}) == ()
+                for light in ("blink", "flash"):
+                    place = record.leds.index(led)
+                    fitting = [row for row in record.rows if row.patterns[place].light in (light, "any")]
+                    assert list(record.states({led.label: light})) == fitting
+                    unknown += len(fitting) > 1
+            for wrong in ("", "glow", "on 3", "on two", "flash 1.5", "flash two", "flash 0", "flash -1", "flash 1/2",
+                          "blink 1 2", "blink 1/0 s", "blink -1 s", "blink nan s", "blink 2", "blink red green",
+                          "blink 1 s, 1 s off", "on, 1 s off", "flash 1 s", "flash 2, 1/0 s off"):  # fmt: skip
+                with pytest.raises(ValueError, match=f"^{wrong!r} is no pattern"):
                     record.states({record.leds[0].label: wrong})
+    assert unknown
 
 
 def row_facts(row: Any) -> list[Any]:

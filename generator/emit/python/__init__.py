@@ -8,7 +8,8 @@ from generator.emit.base import Output, Target
 from generator.emit.environment import license_text
 from generator.emit.environment import render as fill_template
 from generator.emit.python.device import DeviceBuilder
-from generator.emit.python.text import manual_text
+from generator.emit.python.panels import colours
+from generator.emit.python.text import literal, manual_text
 from generator.emit.python.vectors import vectors_of
 from generator.emit.python.views import ExportView, Head, TypeView
 from generator.model import DataType, Light, Model
@@ -69,6 +70,7 @@ def render(model: Model) -> dict[str, Output]:
     types = [TypeView(t.canopen_name, f"0x{t.canopen_number:04X}", t.bits, t.signed) for t in DataType]
     shared = {"head": head, "devices": devices, "examples": examples, "data_types": types}
     shared |= {"records": RECORDS, "panels": PANELS, "lights": [light.value for light in Light], "exports": EXPORTS}
+    shared |= {"colours": colours(model), "cob_ids": list(map(_cob_id, model.cob_ids))}
 
     files = {
         "pyproject.toml": Output(fill_template("python/pyproject.toml.j2", **shared)),
