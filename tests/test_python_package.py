@@ -4,6 +4,7 @@ import ast
 import dataclasses
 import doctest
 import importlib
+import inspect
 import json
 import os
 import shutil
@@ -12,6 +13,7 @@ import subprocess
 import sys
 import textwrap
 import timeit
+import typing
 import zipfile
 from collections.abc import Callable, Iterator
 from dataclasses import replace
@@ -34,6 +36,7 @@ from generator.model import (
     Bit,
     BitField,
     Cite,
+    CobId,
     Code,
     CodeRef,
     Column,
@@ -316,6 +319,7 @@ def test_records_have_every_field_of_the_model(package: Any) -> None:
         (package.CodeRef, CodeRef),
         (package.ObjectRef, ObjectRef),
         (package.NodeRelative, NodeRelative),
+        (package.CobId, CobId),
         (package.IndicatorTable, IndicatorTable),
         (package.IndicatorRow, IndicatorRow),
         (package.Led, Led),
@@ -342,6 +346,35 @@ def test_data_types(package: Any) -> None:
     """Name, number, width and sign of every data type."""
     assert [plain_type(entry) for entry in package.DATA_TYPES.values()] == [model_type(entry) for entry in DataType]
     assert all(entry.name == name for name, entry in package.DATA_TYPES.items())
+
+
+def test_type_hints(package: Any) -> None:
+    """The annotations of every class and method can be read at run time."""
+    values = (getattr(package, name) for name in package.__all__)
+    classes: list[Any] = [value for value in values if isinstance(value, type)]
+    hints = {each.__name__: typing.get_type_hints(each) for each in classes}
+    assert hints["Code"]["default"] == int | str | package.NodeRelative | None
+    records = [each for each in classes if hasattr(each, "__dataclass_fields__")]
+    assert records and all(set(each.__slots__) <= set(hints[each.__name__]) for each in records)
+    for method in (value for each in classes for value in vars(each).values() if inspect.isfunction(value)):
+        if not method.__name__.startswith("__"):
+            typing.get_type_hints(method)
+
+
+def test_cob_ids(package: Any, model: Model) -> None:
+    """Every identifier; a broadcast is the same for every node, the others follow the node address."""
+    assert list(package.COB_IDS) == [entry.name for entry in model.cob_ids]
+    for entry in model.cob_ids:
+        record = package.COB_IDS[entry.name]
+        assert (record.name, record.base, record.broadcast) == (entry.name, entry.base, entry.broadcast)
+        assert [(ref.index, ref.subindex) for ref in record.objects] == [(r.index, r.subindex) for r in entry.objects]
+        assert plain_cite(record.cite) == plain_cite(entry.cite)
+        for node in (1, 5, 127):
+            assert record.at(node) == entry.base + (0 if entry.broadcast else node)
+        for wrong in (0, 128):
+            with pytest.raises(ValueError, match="no node address"):
+                record.at(wrong)
+    assert {entry.broadcast for entry in model.cob_ids} == {True, False}
 
 
 def test_codes(pairs: list[tuple[Any, Device]]) -> None:
@@ -1050,13 +1083,15 @@ def programs(distribution: Path, model: Model, tmp_path_factory: pytest.TempPath
     member = safe(names.option_names(code.options)[0], "python").upper()
     consumer = f"""
         from typing_extensions import Literal, assert_type
-        from {PACKAGE} import Code, Device, Error, Flags, Selection, {device.id} as d
+        from {PACKAGE} import COB_IDS, Code, CodeRef, Device, Error, Flags, Selection, {device.id} as d
 
         code = d.code(d.{names.code_name(code).upper()}, slot=None)
         assert_type(code, Code)
         assert_type(code.index, int)
         assert_type(d.DEVICE, Device)
         assert_type(d.ERRORS[0], Error)
+        assert_type(d.error(d.ERRORS[0].number, {device.errors[0].kind!r}).codes_for(1, slot=None), tuple[CodeRef, ...])
+        assert_type(COB_IDS["SYNC"].at(1), int)
         assert_type({enum}.{member}, Literal[{enum}.{member}])
         assert_type({enum}({code.options[0].value}).label, str)
         assert_type({flag}.of(3), {flag})

@@ -12,7 +12,7 @@ from generator.emit.python.panels import colours
 from generator.emit.python.text import literal, manual_text
 from generator.emit.python.vectors import vectors_of
 from generator.emit.python.views import ExportView, Head, TypeView
-from generator.model import DataType, Light, Model
+from generator.model import CobId, DataType, Light, Model
 from generator.naming import Scope, safe
 
 PACKAGE = "drivespec_devices"
@@ -22,6 +22,7 @@ RECORDS = (
     "BitField",
     "CanOpen",
     "Cite",
+    "CobId",
     "Code",
     "CodeRef",
     "DataType",
@@ -49,7 +50,7 @@ TELEGRAM_BASES = ("DecodeError", "EncodeError", "Telegram", "TelegramError")
 
 EXPORTS = (
     ExportView("_enums", ("Flags", "Selection")),
-    ExportView("_records", (*RECORDS, "DATA_TYPES")),
+    ExportView("_records", (*RECORDS, "COB_IDS", "DATA_TYPES")),
     ExportView("_panels", PANELS),
     ExportView("_telegram", TELEGRAM_BASES),
 )
@@ -92,6 +93,14 @@ def render(model: Model) -> dict[str, Output]:
         files[f"{PACKAGE}/{view.tables_module}.py"] = Output(fill_template("python/tables.py.j2", view=view))
         files[f"{PACKAGE}/{view.rows_module}.py"] = Output(fill_template("python/rows.py.j2", view=view))
     return files
+
+
+def _cob_id(entry: CobId) -> str:
+    """Entry of the table of identifiers."""
+    objects = " ".join(f"ObjectRef(0x{ref.index:04X}, {ref.subindex})," for ref in entry.objects)
+    cite = ", ".join(map(literal, (entry.cite.manual, entry.cite.chapter, entry.cite.page)))
+    name = literal(entry.name)
+    return f"{name}: CobId({name}, 0x{entry.base:03X}, {entry.broadcast}, ({objects}), Cite({cite}))"
 
 
 def _head(model: Model) -> Head:
