@@ -532,6 +532,18 @@ def class_docs(owner: type) -> dict[str, str]:
     }  # fmt: skip
 
 
+def mistaken(telegram: Any, layout: Layout, other: Layout) -> bool:
+    """Whether the class, which checks no constant, reads the other telegram, which begins with one."""
+    if layout.protocol != other.protocol or other.fields[0].constant is None:
+        return False
+    size = sum(field.length for field in other.fields if isinstance(field.length, int))
+    try:
+        telegram.decode(bytes(size))
+    except ValueError:
+        return False
+    return all(field.constant is None for field in layout.fields)
+
+
 def test_telegrams_are_documented(pairs: list[tuple[Any, Device]]) -> None:
     """Each class says which telegram it is and where it is printed, each field what it is."""
     for module, device in pairs:
@@ -542,6 +554,9 @@ def test_telegrams_are_documented(pairs: list[tuple[Any, Device]]) -> None:
             assert doc.startswith(" ".join(layout.name.split()))
             assert doc.endswith(f"{layout.cite.manual}, {layout.cite.chapter}{page}.")
             assert all(erratum in doc for erratum in layout.errata)
+            others = [other for other in device.layouts if mistaken(telegram, layout, other)]
+            assert ("To be tried after" in doc) == bool(others)
+            assert all(class_name(other) in doc for other in others)
             docs = class_docs(telegram)
             for field in layout.fields:
                 doc = docs[field_name(field)]
