@@ -53,7 +53,13 @@ def published(root: Path, model: Model) -> Model:
     assert list(drives) == [drive.id for drive in model.drives]
     canopen = next(files[device.id]["canopen"] for device in devices if device.canopen)
     cob_ids = tuple(
-        replace(like, name=entry["name"], base=entry["base"], broadcast=entry["broadcast"])
+        replace(
+            like,
+            name=entry["name"],
+            base=entry["base"],
+            broadcast=entry["broadcast"],
+            objects=object_refs(entry["objects"]),
+        )
         for entry, like in zip(canopen["cob_ids"], model.cob_ids, strict=True)
     )
     return replace(model, devices=devices, drives=tuple(drives.values()), cob_ids=cob_ids)
@@ -328,3 +334,4 @@ def test_constants_of_python(root: Path, package: Any, published: Model) -> None
     ):
         check(pairs)
     test_python_package.test_indicators(pairs, package)
+    test_python_package.test_cob_ids(package, published)

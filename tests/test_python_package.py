@@ -4,6 +4,7 @@ import ast
 import dataclasses
 import doctest
 import importlib
+import inspect
 import json
 import os
 import shutil
@@ -12,6 +13,7 @@ import subprocess
 import sys
 import textwrap
 import timeit
+import typing
 import zipfile
 from collections.abc import Callable, Iterator
 from dataclasses import replace
@@ -34,6 +36,7 @@ from generator.model import (
     Bit,
     BitField,
     Cite,
+    CobId,
     Code,
     CodeRef,
     Column,
@@ -298,6 +301,7 @@ def test_records_have_every_field_of_the_model(package: Any) -> None:
                   "named_in"}  # fmt: skip
     enums = {"options": "selection_name", "bits": "flags_name"}
     added = {"device", "index"}  # the way back from a record to its module and object
+    masks = {"ignored_mask"}  # which bits of a number do not matter
     places = {"where", "about_text", "printed_text", "used_text", "rule"}
     in_notes = {"block", "delivered", "code_counts"}
     drawn = {"assignment"}  # its signals are rows of the table
@@ -315,6 +319,7 @@ def test_records_have_every_field_of_the_model(package: Any) -> None:
         (package.CodeRef, CodeRef),
         (package.ObjectRef, ObjectRef),
         (package.NodeRelative, NodeRelative),
+        (package.CobId, CobId),
         (package.IndicatorTable, IndicatorTable),
         (package.IndicatorRow, IndicatorRow),
         (package.Led, Led),
@@ -326,7 +331,7 @@ def test_records_have_every_field_of_the_model(package: Any) -> None:
     ):
         fields = {enums.get(field.name, field.name) for field in dataclasses.fields(source)}
         left_out = places | in_notes | drawn | (as_printed - set(record.__slots__))
-        assert set(record.__slots__) | added == (fields - left_out) | added, source
+        assert (set(record.__slots__) - masks) | added == (fields - left_out) | added, source
 
 
 def test_devices(package: Any, model: Model) -> None:
@@ -341,6 +346,35 @@ def test_data_types(package: Any) -> None:
     """Name, number, width and sign of every data type."""
     assert [plain_type(entry) for entry in package.DATA_TYPES.values()] == [model_type(entry) for entry in DataType]
     assert all(entry.name == name for name, entry in package.DATA_TYPES.items())
+
+
+def test_type_hints(package: Any) -> None:
+    """The annotations of every class and method can be read at run time."""
+    values = (getattr(package, name) for name in package.__all__)
+    classes: list[Any] = [value for value in values if isinstance(value, type)]
+    hints = {each.__name__: typing.get_type_hints(each) for each in classes}
+    assert hints["Code"]["default"] == int | str | package.NodeRelative | None
+    records = [each for each in classes if hasattr(each, "__dataclass_fields__")]
+    assert records and all(set(each.__slots__) <= set(hints[each.__name__]) for each in records)
+    for method in (value for each in classes for value in vars(each).values() if inspect.isfunction(value)):
+        if not method.__name__.startswith("__"):
+            typing.get_type_hints(method)
+
+
+def test_cob_ids(package: Any, model: Model) -> None:
+    """Every identifier; a broadcast is the same for every node, the others follow the node address."""
+    assert list(package.COB_IDS) == [entry.name for entry in model.cob_ids]
+    for entry in model.cob_ids:
+        record = package.COB_IDS[entry.name]
+        assert (record.name, record.base, record.broadcast) == (entry.name, entry.base, entry.broadcast)
+        assert [(ref.index, ref.subindex) for ref in record.objects] == [(r.index, r.subindex) for r in entry.objects]
+        assert plain_cite(record.cite) == plain_cite(entry.cite)
+        for node in (1, 5, 127):
+            assert record.at(node) == entry.base + (0 if entry.broadcast else node)
+        for wrong in (0, 128):
+            with pytest.raises(ValueError, match="no node address"):
+                record.at(wrong)
+    assert {entry.broadcast for entry in model.cob_ids} == {True, False}
 
 
 def test_codes(pairs: list[tuple[Any, Device]]) -> None:
@@ -498,6 +532,18 @@ def class_docs(owner: type) -> dict[str, str]:
     }  # fmt: skip
 
 
+def mistaken(telegram: Any, layout: Layout, other: Layout) -> bool:
+    """Whether the class, which checks no constant, reads the other telegram, which begins with one."""
+    if layout.protocol != other.protocol or other.fields[0].constant is None:
+        return False
+    size = sum(field.length for field in other.fields if isinstance(field.length, int))
+    try:
+        telegram.decode(bytes(size))
+    except ValueError:
+        return False
+    return all(field.constant is None for field in layout.fields)
+
+
 def test_telegrams_are_documented(pairs: list[tuple[Any, Device]]) -> None:
     """Each class says which telegram it is and where it is printed, each field what it is."""
     for module, device in pairs:
@@ -508,6 +554,9 @@ def test_telegrams_are_documented(pairs: list[tuple[Any, Device]]) -> None:
             assert doc.startswith(" ".join(layout.name.split()))
             assert doc.endswith(f"{layout.cite.manual}, {layout.cite.chapter}{page}.")
             assert all(erratum in doc for erratum in layout.errata)
+            others = [other for other in device.layouts if mistaken(telegram, layout, other)]
+            assert ("To be tried after" in doc) == bool(others)
+            assert all(class_name(other) in doc for other in others)
             docs = class_docs(telegram)
             for field in layout.fields:
                 doc = docs[field_name(field)]
@@ -551,7 +600,9 @@ def test_code_lookups(pairs: list[tuple[Any, Device]]) -> None:
                 assert module.index_code(code.index) == code.number
                 for slot in device.slots:
                     twin = code.number if code.slot is None else numbers[code.twin_of, slot.name]
-                    assert module.code_index(code.twin_of, slot.name) == device.drive.index_base - twin
+                    for number in (code.number, code.twin_of):
+                        assert module.code_index(number, slot.name) == device.drive.index_base - twin
+                        assert module.code_index(number, slot.name) == module.code(number, slot.name).index
         unknown = max((code.number for code in device.codes), default=0) + 1
         with pytest.raises(LookupError, match=f"no code C{unknown:05d}"):
             module.code(unknown)
@@ -567,6 +618,11 @@ def test_code_lookups(pairs: list[tuple[Any, Device]]) -> None:
                 for function in (module.code_index, module.index_code):
                     with pytest.raises(ValueError, match=str(wrong)):
                         function(wrong)
+            for slot_name in (None, *(slot.name for slot in device.slots)):
+                with pytest.raises(TypeError, match="float"):
+                    module.code_index(1.5, slot_name)
+            with pytest.raises(TypeError, match="float"):
+                module.index_code(1.5)
 
 
 def test_codes_behind_an_index(pairs: list[tuple[Any, Device]]) -> None:
@@ -594,8 +650,11 @@ def test_codes_behind_an_index(pairs: list[tuple[Any, Device]]) -> None:
 
 def test_error_lookups(pairs: list[tuple[Any, Device]]) -> None:
     """Every number of every run, whatever its response field, and no number beside them."""
+    alternatives = 0
     for module, device in pairs:
+        slots = {code.number: code.slot for code in device.codes}
         known = {(error.kind, number) for error in device.errors for number in range(error.number, error.last + 1)}
+        fields = dict(device.drive.error_fields) if device.drive is not None else {}
         for error in device.errors:
             for number in range(error.number, error.last + 1):
                 same = [e for e in device.errors if e.kind == error.kind and e.number <= number <= e.last]
@@ -603,15 +662,27 @@ def test_error_lookups(pairs: list[tuple[Any, Device]]) -> None:
                 assert sorted(e.name for e in found) == sorted(e.name for e in same)
                 if len(same) == 1:
                     assert module.error(number, error.kind) == found[0]
-                    assert number in found[0]
-                    if len(error.adjustable_in) == error.count:
-                        assert str(found[0].code_for(number)) == str(error.adjustable_in[number - error.number])
-                    else:
-                        assert found[0].code_for(number) is None
+                    codes = error.adjustable_in
+                    if len(codes) == error.count:
+                        codes = (codes[number - error.number],)
+                    alternatives += len(codes) > 1
+                    ignored = sum(fields[name].mask for name in ("response", "instance") if name in fields)
+                    ignored = ignored if error.kind == "device" else 0
+                    for reported in (number, number | ignored):
+                        assert reported in found[0]
+                        assert plain_refs(found[0].codes_for(reported)) == plain_refs(codes)
+                        for slot in device.slots:
+                            own = [ref for ref in codes if slots[ref.number] in (None, slot.name)]
+                            assert plain_refs(found[0].codes_for(reported, slot.name)) == plain_refs(own)
+                    for wrong in (error.number - 1, error.last + 1, number | 1 << 32):
+                        assert wrong not in found[0]
+                        with pytest.raises(LookupError, match="is not of <Error"):
+                            found[0].codes_for(wrong)
+                    with pytest.raises(LookupError, match="no slot 'X9'"):
+                        found[0].codes_for(number, "X9")
             for number in (error.number - 1, error.last + 1):
                 if (error.kind, number) not in known and error.kind != "device":
                     assert module.errors_at(number, error.kind) == ()
-        fields = dict(device.drive.error_fields) if device.drive is not None else {}
         if "response" in fields:
             for error in device.errors:
                 if error.kind == "device":
@@ -621,8 +692,14 @@ def test_error_lookups(pairs: list[tuple[Any, Device]]) -> None:
                 if error.kind == "device":
                     assert module.error(error.number | fields["instance"].mask) is module.error(error.number)
         free = max((number for _, number in known), default=0) + 1
-        with pytest.raises(LookupError, match=f"no device error {free:#x}"):
+        with pytest.raises(LookupError, match=f"no device error {free:#x}") as caught:
             module.error(free)
+        kinds = list(dict.fromkeys(error.kind for error in device.errors))
+        assert str(caught.value).endswith(", ".join(kinds)) == ("device" not in kinds)
+        for function in (module.error, module.errors_at):
+            with pytest.raises(LookupError, match=f"no errors of kind 'nonsense'; there are: {', '.join(kinds)}$"):
+                function(free, "nonsense")
+    assert alternatives
 
 
 def test_error_numbers_come_apart(pairs: list[tuple[Any, Device]]) -> None:
@@ -653,7 +730,7 @@ def test_error_numbers_come_apart(pairs: list[tuple[Any, Device]]) -> None:
 
 
 def test_values_and_numbers_on_the_bus(pairs: list[tuple[Any, Device]], package: Any) -> None:
-    """Value times scaling within range and type; what lies between two numbers or outside is refused."""
+    """Value times scaling, rounded, within range and type; what lies outside is refused before it is rounded."""
     scaled = 0
     for module, device in pairs:
         for code in device.codes:
@@ -673,6 +750,9 @@ def test_values_and_numbers_on_the_bus(pairs: list[tuple[Any, Device]], package:
                     assert record.from_wire(record.to_wire(bound)) == bound
                 with pytest.raises(ValueError, match=r"outside|not fit"):
                     record.to_wire(bound + step)
+                if code.range is not None:
+                    with pytest.raises(ValueError, match="outside"):
+                        record.to_wire(bound + Fraction(step, 10 * scaling))
             for raw in (code.data_type.lowest - 1, code.data_type.highest + 1):
                 with pytest.raises(ValueError, match="does not fit"):
                     record.from_wire(raw)
@@ -685,14 +765,25 @@ def test_values_and_numbers_on_the_bus(pairs: list[tuple[Any, Device]], package:
                     value = finer.from_wire(min(raw, code.data_type.highest))
                     assert finer.to_wire(value) == min(raw, code.data_type.highest)
                     assert finer.to_wire(Decimal(value.numerator) / value.denominator) == finer.to_wire(value)
-                for between in (Fraction(1, 2 * factor), 0.5 / factor):
-                    with pytest.raises(ValueError, match=f"no multiple of 1/{factor}"):
-                        finer.to_wire(between)
+                for tenths, nearest in ((14, 1), (15, 2), (16, 2), (25, 3), (4, 0)):
+                    value = Fraction(tenths, 10 * factor)
+                    assert finer.to_wire(value) == finer.to_wire(float(value)) == nearest
+                    if lowest < 0:
+                        assert finer.to_wire(-value) == finer.to_wire(-float(value)) == -nearest
+                with pytest.raises(ValueError, match="not fit"):
+                    finer.to_wire(Fraction(2 * highest + 1, 2 * factor))
+                assert finer.to_wire(Fraction(10 * highest + 4, 10 * factor)) == highest
                 scaled += 1
             assert replace(record, scaling=10, range=None).to_wire(10.2) == 102
-            for nothing in (float("nan"), float("inf"), "x"):
-                with pytest.raises(ValueError, match=r"nan|inf|'x'"):
+            for nothing in (float("nan"), float("inf"), Decimal("nan"), Decimal("inf")):
+                with pytest.raises(ValueError, match=r"(?i)nan|inf"):
                     record.to_wire(nothing)
+            for other in ("x", "1000", True, None, b"1"):
+                with pytest.raises(TypeError, match=r"no number|Rational"):
+                    record.to_wire(other)
+            for fraction in ("1000", 1.5, Fraction(1, 2)):
+                with pytest.raises(TypeError, match="integer"):
+                    record.from_wire(fraction)
     for wrong in (0, 128):
         with pytest.raises(ValueError, match="no node address"):
             package.NodeRelative(0x180).at(wrong)
@@ -761,7 +852,9 @@ def test_patterns_fit_where_both_say_the_same(package: Any) -> None:
     """What one of two patterns leaves out may be anything; what both say has to be equal."""
     of = package.Pattern.of
     alike = [("flash 2", "flash 2, 1 s off"), ("blink", "blink 0.2 s"), ("on", "on green"), ("any", "flash 3")]
+    alike += [("flash", "flash 2, 1 s off"), ("flash red", "flash 3"), ("on_or_flicker", "flicker")]
     unlike = [("flash 2", "flash 3, 1 s off"), ("blink 1 s", "blink 0.2 s"), ("on red", "on green"), ("on", "off")]
+    unlike += [("flash", "blink"), ("on_or_flicker", "blink")]
     for pairs_, expected in ((alike, True), (unlike, False)):
         for first, second in pairs_:
             assert of(first).fits(of(second)) is of(second).fits(of(first)) is expected
@@ -769,6 +862,7 @@ def test_patterns_fit_where_both_say_the_same(package: Any) -> None:
 
 def test_indicators(pairs: list[tuple[Any, Device]], package: Any) -> None:
     """Every fact of every table of LEDs; what a row shows leads to the rows that an observer could mean."""
+    unknown = 0
     for module, device in pairs:
         assert list(module.INDICATORS) == [table.id for table in device.indicators]
         for table in device.indicators:
@@ -793,9 +887,22 @@ def test_indicators(pairs: list[tuple[Any, Device]], package: Any) -> None:
             assert record.states({led.label: "flash 9" for led in record.leds}) == ()
             with pytest.raises(LookupError, match="no LED 'nonsense'"):
                 record.states({"nonsense": "on"})
-            for wrong in ("", "glow", "on 3", "flash 1.5", "blink 1 2", "blink red green"):
-                with pytest.raises(ValueError, match=r"no pattern|invalid literal|Invalid literal"):
+            for led in record.leds:
+                assert record.states({led.label: f"on {led.colour}"}) == record.states({led.label: "on"})
+                assert record.states({led.label: f"blink {led.colour}"}) == record.states({led.label: "blink"})
+                for colour in {other.colour for table in device.indicators for other in table.leds} - {led.colour}:
+                    assert record.states({led.label: f"on {colour}"}) == ()
+                for light in ("blink", "flash"):
+                    place = record.leds.index(led)
+                    fitting = [row for row in record.rows if row.patterns[place].light in (light, "any")]
+                    assert list(record.states({led.label: light})) == fitting
+                    unknown += len(fitting) > 1
+            for wrong in ("", "glow", "on 3", "on two", "flash 1.5", "flash two", "flash 0", "flash -1", "flash 1/2",
+                          "blink 1 2", "blink 1/0 s", "blink -1 s", "blink nan s", "blink 2", "blink red green",
+                          "blink 1 s, 1 s off", "on, 1 s off", "flash 1 s", "flash 2, 1/0 s off"):  # fmt: skip
+                with pytest.raises(ValueError, match=f"^{wrong!r} is no pattern"):
                     record.states({record.leds[0].label: wrong})
+    assert unknown
 
 
 def row_facts(row: Any) -> list[Any]:
@@ -991,13 +1098,15 @@ def programs(distribution: Path, model: Model, tmp_path_factory: pytest.TempPath
     member = safe(names.option_names(code.options)[0], "python").upper()
     consumer = f"""
         from typing_extensions import Literal, assert_type
-        from {PACKAGE} import Code, Device, Error, Flags, Selection, {device.id} as d
+        from {PACKAGE} import COB_IDS, Code, CodeRef, Device, Error, Flags, Selection, {device.id} as d
 
         code = d.code(d.{names.code_name(code).upper()}, slot=None)
         assert_type(code, Code)
         assert_type(code.index, int)
         assert_type(d.DEVICE, Device)
         assert_type(d.ERRORS[0], Error)
+        assert_type(d.error(d.ERRORS[0].number, {device.errors[0].kind!r}).codes_for(1, slot=None), tuple[CodeRef, ...])
+        assert_type(COB_IDS["SYNC"].at(1), int)
         assert_type({enum}.{member}, Literal[{enum}.{member}])
         assert_type({enum}({code.options[0].value}).label, str)
         assert_type({flag}.of(3), {flag})
@@ -1021,6 +1130,7 @@ def programs(distribution: Path, model: Model, tmp_path_factory: pytest.TempPath
         d.NONSENSE
         {enum}.NONSENSE
         text: str = {enum}.of(1)
+        d.error(1, "nonsense")
     """
     folder = tmp_path_factory.mktemp("programs")
     (folder / "consumer.py").write_text(textwrap.dedent(consumer), encoding="utf-8")
@@ -1035,7 +1145,8 @@ def test_mypy(distribution: Path, programs: Path, tmp_path: Path) -> None:
     assert done.returncode == 0, done.stdout + done.stderr
     done = run(*mypy, "mistakes.py", cwd=programs, path=distribution)
     codes = [line.rsplit("[", 1)[1].rstrip("]") for line in done.stdout.splitlines() if ": error:" in line]
-    assert codes == ["arg-type", "misc", "attr-defined", "attr-defined", "attr-defined", "assignment"], done.stdout
+    assert codes == ["arg-type", "misc", "attr-defined", "attr-defined", "attr-defined", "assignment",
+                     "arg-type"], done.stdout  # fmt: skip
 
 
 def test_pyright(distribution: Path, programs: Path, tmp_path: Path) -> None:
@@ -1060,6 +1171,7 @@ def test_pyright(distribution: Path, programs: Path, tmp_path: Path) -> None:
         "reportAttributeAccessIssue",
         "reportAttributeAccessIssue",
         "reportAssignmentType",
+        "reportArgumentType",
     ]
 
 

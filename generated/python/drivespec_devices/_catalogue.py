@@ -8,6 +8,8 @@
 
 from __future__ import annotations
 
+import operator
+from fractions import Fraction
 from functools import cached_property
 from importlib import import_module
 
@@ -16,7 +18,6 @@ from drivespec_devices._enums import Flags, Selection
 
 TYPE_CHECKING = False  # type checkers take it for True; it saves the time that importing typing costs
 if TYPE_CHECKING:
-    from fractions import Fraction
     from typing import Any
 
 
@@ -96,17 +97,18 @@ class Catalogue:
     def code_index(self, number: int, slot: str | None = None) -> int:
         """Index under which the bus reaches a code of the drive, whether the manual lists it or not.
 
-        With ``slot`` the number of a code of the first slot stands for its twin in that slot.
+        With ``slot`` the number of a code of any slot stands for its twin in that slot.
 
         Raises:
             ValueError: No code has that number.
             LookupError: The device has no such slot.
         """
+        number = operator.index(number)
         if slot is not None:
             self._check_slot(slot)
             rows = self._rows.DEVICE[_SLOTS]
             offset = next(row[_OFFSET] for row in rows if row[0] == slot)
-            number += offset if rows[0][_FIRST] <= number <= rows[0][_LAST] else 0
+            number += next((offset - row[_OFFSET] for row in rows if row[_FIRST] <= number <= row[_LAST]), 0)
         if not 0 <= number <= self._rows.INDEX_BASE:
             raise ValueError(f"{number} is not the number of a code")
         index: int = self._rows.INDEX_BASE - number
@@ -118,6 +120,7 @@ class Catalogue:
         Raises:
             ValueError: No code has that index.
         """
+        index = operator.index(index)
         if not 0 <= index <= self._rows.INDEX_BASE:
             raise ValueError(f"{index} is not the index of a code")
         number: int = self._rows.INDEX_BASE - index
@@ -172,7 +175,7 @@ class Catalogue:
         The fields response and instance of a device's error number do not matter.
 
         Raises:
-            LookupError: The device has no such error, or several (``errors_at`` gives them all).
+            LookupError: The device has no such error, several (``errors_at`` gives them all), or none of that kind.
         """
         try:
             return self._known_errors[kind][number]
@@ -182,16 +185,20 @@ class Catalogue:
             return self._known_errors.setdefault(kind, {}).setdefault(number, found[0])
         if found:
             raise LookupError(f"{self._device} has {len(found)} entries for {kind} error {number:#x}")
-        raise LookupError(f"{self._device} has no {kind} error {number:#x}")
+        known = "" if kind in self._kinds else f"; it has errors of the kinds: {', '.join(self._kinds) or 'none'}"
+        raise LookupError(f"{self._device} has no {kind} error {number:#x}{known}")
 
     def errors_at(self, number: int, kind: str = "device") -> tuple[records.Error, ...]:
-        """Every entry of that kind that stands for an error number, single numbers before runs."""
+        """Every entry of that kind that stands for an error number, single numbers before runs.
+
+        Raises:
+            LookupError: The device has no errors of that kind (of "device" there may be none).
+        """
+        if kind not in ("device", *self._kinds):
+            raise LookupError(f"{self._device} has no errors of kind {kind!r}; there are: {', '.join(self._kinds)}")
+        plain = number & ~self._ignored(kind)
         runs = (run for run in self._error_runs if run.kind == kind and number in run)
-        found = (*self._single_errors.get((kind, number), ()), *runs)
-        if found or kind != "device":
-            return found
-        plain = number & ~self._rows.IGNORED_MASK
-        return self.errors_at(plain, kind) if plain != number else ()
+        return (*self._single_errors.get((kind, plain), ()), *runs)
 
     def error_parts(self, number: int) -> dict[str, int]:
         """Number in each field of a device's error number, by the name of the field.
@@ -271,7 +278,16 @@ class Catalogue:
 
     @cached_property
     def _errors(self) -> tuple[records.Error, ...]:
-        return tuple(map(_error, self._rows.ERRORS))
+        return tuple(_error(row, self._device, self._ignored(row[0])) for row in self._rows.ERRORS)
+
+    @cached_property
+    def _kinds(self) -> tuple[str, ...]:
+        return tuple(dict.fromkeys(row[0] for row in self._rows.ERRORS))
+
+    def _ignored(self, kind: str) -> int:
+        """Bits of an error number that do not tell which error it is."""
+        mask: int = self._rows.IGNORED_MASK if kind == "device" else 0
+        return mask
 
     @cached_property
     def _single_errors(self) -> dict[tuple[str, int], tuple[records.Error, ...]]:
@@ -306,11 +322,7 @@ def _cite(row: Any) -> Any:
 
 
 def _bound(value: int | tuple[int, int]) -> int | Fraction:
-    if not isinstance(value, tuple):
-        return value
-    from fractions import Fraction  # slow to import, and few ranges need it
-
-    return Fraction(*value)
+    return Fraction(*value) if isinstance(value, tuple) else value
 
 
 def _range(row: Any) -> records.Range | None:
@@ -446,7 +458,7 @@ def _object(device: str, index: int, row: Any) -> records.DictionaryObject:
     )
 
 
-def _error(row: Any) -> records.Error:
+def _error(row: Any, device: str, ignored_mask: int) -> records.Error:
     (kind, number, last, slot, name, response, responses, adjustable_in, register, causes, remedies, description,
      origin, cite, errata) = row
     return records.Error(
@@ -465,6 +477,8 @@ def _error(row: Any) -> records.Error:
         origin,
         records.Cite(*cite),
         errata,
+        device,
+        ignored_mask,
     )
 
 

@@ -21,6 +21,7 @@ class Sdo(base.Telegram):
 
     Writing and reading up to four bytes, the answers to both, and the start of a block, whose length then stands
     in the data.
+    To be tried after SdoError, whose bytes it takes for its own.
     Errata: motorola-format, command-bits-block, command-bit-s, sdo-three-bytes.
     EDS94AYCCA-EN-5.0, 9.2 p. 63.
     """
@@ -230,6 +231,7 @@ class SdoSegmentResponse(base.Telegram):
 
     Up to seven bytes of a block. The toggle bit is that of the request; bit 0 marks the last telegram, in which
     bits 1 to 3 count the bytes without data.
+    To be tried after SdoError, whose bytes it takes for its own.
     EDS94AYCCA-EN-5.0, 9.3.3 p. 72.
     """
 

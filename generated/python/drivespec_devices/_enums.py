@@ -37,7 +37,10 @@ class Selection(IntEnum):
 
     @classmethod
     def of(cls: type[_S], raw: int) -> _S | int:
-        """Member for a raw value; the value itself, unchanged, where the list has no such entry."""
+        """Member for a raw value; the value itself, unchanged, where the list has no such entry.
+
+        ``isinstance(value, Selection)`` tells which; calling the class raises ``ValueError`` for such a value.
+        """
         try:
             return cls(raw)
         except ValueError:

@@ -8,16 +8,12 @@
 
 from __future__ import annotations
 
+import re
+from collections.abc import Mapping
 from dataclasses import dataclass
+from fractions import Fraction
 
-from drivespec_devices._records import Record
-
-TYPE_CHECKING = False  # type checkers take it for True; it saves the time that importing typing costs
-if TYPE_CHECKING:
-    from collections.abc import Mapping
-    from fractions import Fraction
-
-    from drivespec_devices._records import Cite, CodeRef
+from drivespec_devices._records import Cite, CodeRef, Record
 
 __all__ = (
     "Column",
@@ -30,15 +26,11 @@ __all__ = (
     "Table",
 )
 
-_LIGHTS = (
-    "any",
-    "off",
-    "on",
-    "flicker",
-    "on_or_flicker",
-    "blink",
-    "flash",
+_TEXT = (
+    r"(?P<light>any|off|on|flicker|on_or_flicker|blink|flash)(?: (?P<colour>green|red|yellow))?"
+    r"(?: (?P<period>[0-9]+(?:\.[0-9]+)?) s)?(?: (?P<flashes>[1-9][0-9]*))?(?:, (?P<pause>[0-9]+(?:\.[0-9]+)?) s off)?"
 )
+"""Pattern as text; the colours are those of the LEDs that the package knows."""
 
 
 @dataclass(frozen=True)
@@ -51,6 +43,8 @@ class Pattern(Record):
         period: Seconds after which a blinking LED changes.
         flashes: Number of flashes.
         pause: Seconds of darkness after the flashes.
+
+    What is not known of the last four is ``None``.
     """
 
     __slots__ = ("light", "colour", "period", "flashes", "pause")
@@ -63,20 +57,19 @@ class Pattern(Record):
 
     @classmethod
     def of(cls, text: str) -> Pattern:
-        """Pattern that the text tells: "on", "on green", "blink 0.2 s", "flash 2" or "flash 2, 1 s off".
+        """Pattern that the text tells: "on", "on green", "blink", "blink 0.2 s", "flash", "flash 2, 1 s off".
 
         Raises:
             ValueError: The text tells no pattern.
         """
-        light, *words = text.replace(",", " ").split() or [""]
-        words = [word for word in words if word not in ("s", "off")]
-        colour = words.pop(0) if words and words[0][0].isalpha() else None
-        flashes = int(words.pop(0)) if words and light == "flash" else None
-        seconds = _seconds(words.pop(0)) if words and light in ("blink", "flash") else None
-        if light not in _LIGHTS or words:
+        found = re.fullmatch(_TEXT, " ".join(text.split()))
+        if found is None:
             raise ValueError(f"{text!r} is no pattern of an LED")
-        period, pause = (seconds, None) if light == "blink" else (None, seconds)
-        return cls(light, colour, period, flashes, pause)
+        light, colour, period, flashes, pause = found.groups()
+        if (period and light != "blink") or ((flashes or pause) and light != "flash"):
+            raise ValueError(f"{text!r} is no pattern of an LED")
+        seconds = [Fraction(each) if each else None for each in (period, pause)]
+        return cls(light, colour, seconds[0], int(flashes) if flashes else None, seconds[1])
 
     def fits(self, other: Pattern) -> bool:
         """Whether both may be the same; what one of them does not say can be anything."""
@@ -97,12 +90,6 @@ class Pattern(Record):
             words.append(f"{float(self.period):g} s")
         pause = "" if self.pause is None else f", {float(self.pause):g} s off"
         return " ".join(filter(None, words)) + pause
-
-
-def _seconds(text: str) -> Fraction:
-    from fractions import Fraction  # slow to import
-
-    return Fraction(text)
 
 
 @dataclass(frozen=True)
@@ -143,7 +130,10 @@ class IndicatorTable(Record):
     errata: tuple[str, ...]
 
     def states(self, seen: Mapping[str, str | Pattern]) -> tuple[IndicatorRow, ...]:
-        """Rows that fit to what is seen, by label of the LED; of an LED that is left out anything may be.
+        """Every row that fits what is seen, by label of the LED, in the order of the table.
+
+        What is not known fits everything: an LED that is left out, "blink" without a time, "flash" without a number, a
+        pattern without a colour. A colour that the LED does not have fits nothing.
 
         Raises:
             LookupError: The table has no LED of that label.
@@ -154,11 +144,16 @@ class IndicatorTable(Record):
             if label not in labels:
                 raise LookupError(f"{self.name!r} has no LED {label!r}; there are: {', '.join(labels)}")
         wanted = [Pattern.of(look) if isinstance(look, str) else look for look in (seen.get(x, "any") for x in labels)]
-        return tuple(row for row in self.rows if all(a.fits(b) for a, b in zip(row.patterns, wanted)))
+        return tuple(row for row in self.rows if all(map(_fits, self.leds, row.patterns, wanted)))
 
     def __repr__(self) -> str:
         """Id, name and LEDs."""
         return f"<IndicatorTable {self.id} {self.name!r}: {', '.join(led.label for led in self.leds)}>"
+
+
+def _fits(led: Led, printed: Pattern, seen: Pattern) -> bool:
+    own = (None, led.colour, *led.colour.split("/"))
+    return printed.fits(seen) and (printed.colour is not None or seen.colour in own)
 
 
 @dataclass(frozen=True)

@@ -12,24 +12,24 @@ Texts are those of the manuals, unless they are called a description: those are 
 
 from __future__ import annotations
 
+import operator
 from dataclasses import dataclass
+from decimal import Decimal
+from fractions import Fraction
 from importlib import import_module
+
+from drivespec_devices._enums import Flags, Selection
 
 TYPE_CHECKING = False  # type checkers take it for True; it saves the time that importing typing costs
 if TYPE_CHECKING:
-    from decimal import Decimal
-    from fractions import Fraction
-    from typing import Any, Union
-
-    from drivespec_devices._enums import Flags, Selection
-
-    _Default = Union[int, str, "NodeRelative", None]
+    from typing import Any
 
 __all__ = (
     "Access",
     "BitField",
     "CanOpen",
     "Cite",
+    "CobId",
     "Code",
     "CodeRef",
     "DataType",
@@ -256,6 +256,51 @@ class ObjectRef(Record):
 
 
 @dataclass(frozen=True)
+class CobId(Record):
+    """An identifier of the predefined connection set: ``base`` + node address, of a ``broadcast`` the base alone.
+
+    ``objects`` are those that hold it.
+    """
+
+    __slots__ = ("name", "base", "broadcast", "objects", "cite")
+
+    name: str
+    base: int
+    broadcast: bool
+    objects: tuple[ObjectRef, ...]
+    cite: Cite
+
+    def at(self, node: int) -> int:
+        """Identifier of the telegram of the node address ``node``; of a broadcast the same for every node.
+
+        Raises:
+            ValueError: The node address is not 1 ... 127.
+        """
+        identifier = NodeRelative(self.base).at(node)
+        return self.base if self.broadcast else identifier
+
+
+COB_IDS: dict[str, CobId] = {
+    "NMT": CobId("NMT", 0x000, True, (), Cite("CiA-301-4.02", "9.4", None)),
+    "SYNC": CobId("SYNC", 0x080, True, (ObjectRef(0x1005, None),), Cite("CiA-301-4.02", "9.4", None)),
+    "EMCY": CobId("EMCY", 0x080, False, (ObjectRef(0x1014, None),), Cite("CiA-301-4.02", "9.4", None)),
+    "TIME": CobId("TIME", 0x100, True, (ObjectRef(0x1012, None),), Cite("CiA-301-4.02", "9.4", None)),
+    "TPDO1": CobId("TPDO1", 0x180, False, (ObjectRef(0x1800, 1),), Cite("CiA-301-4.02", "9.4", None)),
+    "RPDO1": CobId("RPDO1", 0x200, False, (ObjectRef(0x1400, 1),), Cite("CiA-301-4.02", "9.4", None)),
+    "TPDO2": CobId("TPDO2", 0x280, False, (ObjectRef(0x1801, 1),), Cite("CiA-301-4.02", "9.4", None)),
+    "RPDO2": CobId("RPDO2", 0x300, False, (ObjectRef(0x1401, 1),), Cite("CiA-301-4.02", "9.4", None)),
+    "TPDO3": CobId("TPDO3", 0x380, False, (ObjectRef(0x1802, 1),), Cite("CiA-301-4.02", "9.4", None)),
+    "RPDO3": CobId("RPDO3", 0x400, False, (ObjectRef(0x1402, 1),), Cite("CiA-301-4.02", "9.4", None)),
+    "TPDO4": CobId("TPDO4", 0x480, False, (ObjectRef(0x1803, 1),), Cite("CiA-301-4.02", "9.4", None)),
+    "RPDO4": CobId("RPDO4", 0x500, False, (ObjectRef(0x1403, 1),), Cite("CiA-301-4.02", "9.4", None)),
+    "SDO tx": CobId("SDO tx", 0x580, False, (ObjectRef(0x1200, 2),), Cite("CiA-301-4.02", "9.4", None)),
+    "SDO rx": CobId("SDO rx", 0x600, False, (ObjectRef(0x1200, 1),), Cite("CiA-301-4.02", "9.4", None)),
+    "NMT error control": CobId("NMT error control", 0x700, False, (), Cite("CiA-301-4.02", "9.4", None)),
+}
+"""Predefined connection set of CANopen, by name."""
+
+
+@dataclass(frozen=True)
 class Slot(Record):
     """A module slot: its run of codes, and what its numbers have more than those of the first slot."""
 
@@ -312,7 +357,8 @@ class Drive(Record):
 @dataclass(frozen=True)
 class CanOpen(Record):
     """CANopen properties that no object tells: bit rates in kbit/s, granularity of PDO mapping in bits, number of the
-    code that holds the node address, and whether the device can be the NMT master."""
+    code that holds the node address, and whether the device can be the NMT master. ``COB_IDS`` of the package has the
+    identifiers of the telegrams."""
 
     __slots__ = ("baud_rates", "granularity", "node_address", "boot_up_master", "cite")
 
@@ -379,7 +425,7 @@ class SubCode(Record):
     device: str
     number: int
     name: str
-    default: _Default
+    default: int | str | NodeRelative | None
     follows: NodeRelative | None
     selection_name: str | None
     description: str
@@ -470,7 +516,7 @@ class Code(Record):
     access: Access
     scaling: int | None
     range: Range | None
-    default: _Default
+    default: int | str | NodeRelative | None
     default_cite: Cite | None
     selection_name: str | None
     flags_name: str | None
@@ -524,40 +570,41 @@ class Code(Record):
         return self.index, subcode
 
     def to_wire(self, value: int | float | Fraction | Decimal) -> int:
-        """Number on the bus for a physical value: the value times the scaling.
+        """Number on the bus for a physical value: the value times the scaling, rounded to the nearest number.
 
-        A float stands for the decimal number that it is printed as, so 10.2 is 10.2 exactly.
+        Halves are rounded away from 0. The range holds for the value as given, before it is rounded. A float stands for
+        the decimal number that it is printed as, so 10.2 is 10.2 exactly.
 
         Raises:
-            ValueError: The code holds no number, or the value lies outside the range or the data type, or between two
-                numbers on the bus.
+            TypeError: The value is no number.
+            ValueError: The code holds no number, or the value lies outside the range or the data type.
         """
-        from fractions import Fraction  # slow to import
-
+        if isinstance(value, (bool, str)):
+            raise TypeError(f"{value!r} is no number")
         if not self.data_type.is_number:
             raise ValueError(f"{self.designation} holds no number")
-        exact = Fraction(repr(value)) if isinstance(value, float) else Fraction(value)
-        wire = exact * (self.scaling or 1)
-        if wire.denominator != 1:
-            raise ValueError(f"{value} is no multiple of 1/{self.scaling} of {self.designation}")
+        try:
+            exact = Fraction(str(value)) if isinstance(value, float) else Fraction(value)
+        except OverflowError:
+            raise ValueError(f"{value} does not fit into {self.data_type.name} of {self.designation}") from None
         if self.range is not None and exact not in self.range:
             raise ValueError(f"{value} lies outside {self.range} of {self.designation}")
-        return self._checked(wire.numerator)
+        wire = exact * (self.scaling or 1)
+        nearest = int(abs(wire) + Fraction(1, 2))
+        return self._checked(nearest if wire >= 0 else -nearest)
 
     def from_wire(self, raw: int) -> int | Fraction:
         """Physical value of a number on the bus: the number divided by the scaling. It may lie outside the range.
 
         Raises:
+            TypeError: ``raw`` is no whole number.
             ValueError: The code holds no number, or its data type not this one.
         """
         if not self.data_type.is_number:
             raise ValueError(f"{self.designation} holds no number")
         scaling = self.scaling or 1
-        if self._checked(raw) % scaling == 0:
-            return raw // scaling
-        from fractions import Fraction  # slow to import
-
-        return Fraction(raw, scaling)
+        raw = self._checked(operator.index(raw))
+        return raw // scaling if raw % scaling == 0 else Fraction(raw, scaling)
 
     def _checked(self, raw: int) -> int:
         if not self.data_type.lowest <= raw <= self.data_type.highest:
@@ -654,7 +701,7 @@ class SubIndex(Record):
     access: str
     printed_type: DataType
     printed_access: str
-    default: _Default
+    default: int | str | NodeRelative | None
     range: Range | None
     selection_name: str | None
     flags_name: str | None
@@ -764,7 +811,7 @@ class Error(Record):
         name: Name in the manual.
         response: Preset response.
         responses: Responses that can be selected.
-        adjustable_in: Codes that set the response; of a run one for each number.
+        adjustable_in: Codes that set the response; ``codes_for`` tells which of them concern a number.
         register: Error register that goes with an emergency code, as printed.
         causes: Causes, in our own words.
         remedies: Remedies, in our own words.
@@ -772,6 +819,8 @@ class Error(Record):
         origin: "manual", "standard", "derived", "assumed" or "public".
         cite: Where it is printed.
         errata: Ids of the errata that concern it.
+        device: Module of this package that holds it.
+        ignored_mask: Bits of a number that do not matter.
     """
 
     __slots__ = (
@@ -790,6 +839,8 @@ class Error(Record):
         "origin",
         "cite",
         "errata",
+        "device",
+        "ignored_mask",
     )
 
     kind: str
@@ -807,21 +858,33 @@ class Error(Record):
     origin: str
     cite: Cite
     errata: tuple[str, ...]
+    device: str
+    ignored_mask: int
 
     def __contains__(self, number: int) -> bool:
         """Whether the entry stands for ``number``."""
-        return self.number <= number <= self.last
+        return self.number <= number & ~self.ignored_mask <= self.last
 
-    def code_for(self, number: int) -> CodeRef | None:
-        """The code that sets the response to ``number``; ``None`` where none does, or not one alone.
+    def codes_for(self, number: int, slot: str | None = None) -> tuple[CodeRef, ...]:
+        """Codes that set the response to ``number``; with ``slot`` those of other slots are left out.
+
+        Of a run with as many codes as numbers each number has its own; otherwise each number has them all, as a rule
+        one for each slot.
 
         Raises:
-            LookupError: The entry does not stand for that number.
+            LookupError: The entry does not stand for that number, or the device has no such slot.
         """
         if number not in self:
             raise LookupError(f"{number:#x} is not of {self!r}")
-        is_one_each = len(self.adjustable_in) == self.last - self.number + 1
-        return self.adjustable_in[number - self.number] if is_one_each else None
+        codes = self.adjustable_in
+        if len(codes) == self.last - self.number + 1:
+            codes = (codes[(number & ~self.ignored_mask) - self.number],)
+        if slot is None:
+            return codes
+        module = import_module(f"drivespec_devices.{self.device}")
+        if slot not in [each.name for each in module.DEVICE.slots]:
+            raise LookupError(f"{self.device} has no slot {slot!r}")
+        return tuple(ref for ref in codes if module.code(ref.number).slot in (None, slot))
 
     def __repr__(self) -> str:
         """Kind, number or run, name and preset response."""

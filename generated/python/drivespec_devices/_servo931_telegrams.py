@@ -15,6 +15,7 @@ class Sdo(base.Telegram):
     """Parameter data telegram (SDO).
 
     Reads or writes a parameter of up to four bytes; the answer to either has the same layout.
+    To be tried after SdoError, whose bytes it takes for its own.
     KHB-13.0002-EN-4.1, 5.2.1 p. 19.
     """
 

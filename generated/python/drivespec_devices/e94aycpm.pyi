@@ -6,7 +6,7 @@ Transcribed from E94AYCPM communication module (PROFIBUS®), Communication Manua
 and look-ups are built when they are first used.
 """
 
-from typing import Final
+from typing import Final, Literal
 
 from drivespec_devices._enums import Flags, Selection
 from drivespec_devices._panels import IndicatorTable, SwitchGroup, Table
@@ -149,7 +149,7 @@ def code_by_name(name: str, slot: str | None = None) -> Code:
 def code_index(number: int, slot: str | None = None) -> int:
     """Index under which the bus reaches a code of the drive, whether the manual lists it or not.
 
-    With ``slot`` the number of a code of the first slot stands for its twin in that slot.
+    With ``slot`` the number of a code of any slot stands for its twin in that slot.
 
     Raises:
         ValueError: No code has that number.
@@ -179,17 +179,21 @@ def object_at(index: int) -> DictionaryObject:
         LookupError: The device has no such object.
     """
 
-def error(number: int, kind: str = "device") -> Error:
+def error(number: int, kind: Literal["device", "dpv0", "dpv1"] = "device") -> Error:
     """The one entry of that kind that stands for an error number; of a run every number.
 
     The fields response and instance of a device's error number do not matter.
 
     Raises:
-        LookupError: The device has no such error, or several (``errors_at`` gives them all).
+        LookupError: The device has no such error, several (``errors_at`` gives them all), or none of that kind.
     """
 
-def errors_at(number: int, kind: str = "device") -> tuple[Error, ...]:
-    """Every entry of that kind that stands for an error number, single numbers before runs."""
+def errors_at(number: int, kind: Literal["device", "dpv0", "dpv1"] = "device") -> tuple[Error, ...]:
+    """Every entry of that kind that stands for an error number, single numbers before runs.
+
+    Raises:
+        LookupError: The device has no errors of that kind (of "device" there may be none).
+    """
 
 def error_parts(number: int) -> dict[str, int]:
     """Number in each field of a device's error number, by the name of the field.

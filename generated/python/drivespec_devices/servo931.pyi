@@ -6,7 +6,7 @@ Transcribed from Communication Manual Servo Drives 930, 931E/K, CANopen, edition
 look-ups are built when they are first used.
 """
 
-from typing import Final
+from typing import Final, Literal
 
 from drivespec_devices._enums import Flags, Selection
 from drivespec_devices._panels import IndicatorTable, SwitchGroup, Table
@@ -131,17 +131,21 @@ def object_at(index: int) -> DictionaryObject:
         LookupError: The device has no such object.
     """
 
-def error(number: int, kind: str = "device") -> Error:
+def error(number: int, kind: Literal["device", "emergency", "sdo_abort"] = "device") -> Error:
     """The one entry of that kind that stands for an error number; of a run every number.
 
     The fields response and instance of a device's error number do not matter.
 
     Raises:
-        LookupError: The device has no such error, or several (``errors_at`` gives them all).
+        LookupError: The device has no such error, several (``errors_at`` gives them all), or none of that kind.
     """
 
-def errors_at(number: int, kind: str = "device") -> tuple[Error, ...]:
-    """Every entry of that kind that stands for an error number, single numbers before runs."""
+def errors_at(number: int, kind: Literal["device", "emergency", "sdo_abort"] = "device") -> tuple[Error, ...]:
+    """Every entry of that kind that stands for an error number, single numbers before runs.
+
+    Raises:
+        LookupError: The device has no errors of that kind (of "device" there may be none).
+    """
 
 # Objects: their indexes; sub-indexes: index and sub-index.
 

@@ -8,10 +8,11 @@ from generator.emit.base import Output, Target
 from generator.emit.environment import license_text
 from generator.emit.environment import render as fill_template
 from generator.emit.python.device import DeviceBuilder
-from generator.emit.python.text import manual_text
+from generator.emit.python.panels import colours
+from generator.emit.python.text import literal, manual_text
 from generator.emit.python.vectors import vectors_of
 from generator.emit.python.views import ExportView, Head, TypeView
-from generator.model import DataType, Light, Model
+from generator.model import CobId, DataType, Light, Model
 from generator.naming import Scope, safe
 
 PACKAGE = "drivespec_devices"
@@ -21,6 +22,7 @@ RECORDS = (
     "BitField",
     "CanOpen",
     "Cite",
+    "CobId",
     "Code",
     "CodeRef",
     "DataType",
@@ -48,7 +50,7 @@ TELEGRAM_BASES = ("DecodeError", "EncodeError", "Telegram", "TelegramError")
 
 EXPORTS = (
     ExportView("_enums", ("Flags", "Selection")),
-    ExportView("_records", (*RECORDS, "DATA_TYPES")),
+    ExportView("_records", (*RECORDS, "COB_IDS", "DATA_TYPES")),
     ExportView("_panels", PANELS),
     ExportView("_telegram", TELEGRAM_BASES),
 )
@@ -69,6 +71,7 @@ def render(model: Model) -> dict[str, Output]:
     types = [TypeView(t.canopen_name, f"0x{t.canopen_number:04X}", t.bits, t.signed) for t in DataType]
     shared = {"head": head, "devices": devices, "examples": examples, "data_types": types}
     shared |= {"records": RECORDS, "panels": PANELS, "lights": [light.value for light in Light], "exports": EXPORTS}
+    shared |= {"colours": colours(model), "cob_ids": list(map(_cob_id, model.cob_ids))}
 
     files = {
         "pyproject.toml": Output(fill_template("python/pyproject.toml.j2", **shared)),
@@ -90,6 +93,14 @@ def render(model: Model) -> dict[str, Output]:
         files[f"{PACKAGE}/{view.tables_module}.py"] = Output(fill_template("python/tables.py.j2", view=view))
         files[f"{PACKAGE}/{view.rows_module}.py"] = Output(fill_template("python/rows.py.j2", view=view))
     return files
+
+
+def _cob_id(entry: CobId) -> str:
+    """Entry of the table of identifiers."""
+    objects = " ".join(f"ObjectRef(0x{ref.index:04X}, {ref.subindex})," for ref in entry.objects)
+    cite = ", ".join(map(literal, (entry.cite.manual, entry.cite.chapter, entry.cite.page)))
+    name = literal(entry.name)
+    return f"{name}: CobId({name}, 0x{entry.base:03X}, {entry.broadcast}, ({objects}), Cite({cite}))"
 
 
 def _head(model: Model) -> Head:

@@ -56,6 +56,7 @@ class DeviceBuilder:
         source = manual_text(device.manual)
         classes = [view.name for view in telegrams.classes]
         functions = API if drive is None else (*API, *INDEX_API, *(ERROR_API if drive.error_fields else ()))
+        kinds = dict.fromkeys(("device", *(error.kind for error in device.errors)))
         return DeviceView(
             module=self._module,
             rows_module=f"_{self._module}_rows",
@@ -76,6 +77,7 @@ class DeviceBuilder:
             index_base=literal(None if drive is None else drive.index_base),
             ignored_mask=f"0x{0xFFFF_FFFF ^ (device.error_mask or 0xFFFF_FFFF):08X}",
             has_error_fields=drive is not None and bool(drive.error_fields),
+            error_kinds=f"Literal[{', '.join(map(literal, kinds))}]",
             groups=groups,
             enums=self._enums.views,
             enum_bases=", ".join(sorted({enum.base for enum in self._enums.views})),

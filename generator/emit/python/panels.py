@@ -6,7 +6,7 @@ from generator.emit.python.rows import cite_row, tuple_table
 from generator.emit.python.text import Literal, fill
 from generator.emit.python.views import RowView, TableView
 from generator.emit.switches import remarks
-from generator.model import Device, IndicatorRow, IndicatorTable, Pattern, SwitchGroup, Table
+from generator.model import Device, IndicatorRow, IndicatorTable, Model, Pattern, SwitchGroup, Table
 
 
 def panel_tables(device: Device) -> tuple[TableView, ...]:
@@ -16,6 +16,14 @@ def panel_tables(device: Device) -> tuple[TableView, ...]:
         tuple_table("SWITCHES", map(_switch, device.switches)),
         tuple_table("TABLES", map(_table, device.tables)),
     )
+
+
+def colours(model: Model) -> tuple[str, ...]:
+    """Every colour of an LED, sorted; an LED of two has "red/green"."""
+    tables = [table for device in model.devices for table in device.indicators]
+    found = {led.colour for table in tables for led in table.leds}
+    found |= {pattern.colour for table in tables for row in table.rows for pattern in row.patterns if pattern.colour}
+    return tuple(sorted(found | {colour for each in found for colour in each.split("/")}))
 
 
 def _indicator(table: IndicatorTable) -> RowView:

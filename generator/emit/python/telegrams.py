@@ -2,6 +2,7 @@
 
 import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from math import inf
 
 from generator.emit import names
 from generator.emit.base import EmitError
@@ -64,7 +65,9 @@ class Telegrams:
     def _layout(self, layout: Layout) -> Iterator[TelegramClassView]:
         name = self._scope.add(class_name(layout), layout.where)
         errata = f"Errata: {', '.join(layout.errata)}." if layout.errata else ""
-        text = doc(f"{layout.name} ({layout.protocol}).", layout.description, errata, f"{layout.cite!s}.")
+        others = [class_name(other) for other in self._device.layouts if _takes(layout, other)]
+        first = f"To be tried after {' and '.join(others)}, whose bytes it takes for its own." if others else ""
+        text = doc(f"{layout.name} ({layout.protocol}).", layout.description, first, errata, f"{layout.cite!s}.")
         yield from self._class(name, layout.fields, layout, text, is_telegram=True)
 
     def _class(
@@ -114,6 +117,21 @@ class Telegrams:
     def _table(self, sizes: tuple[tuple[int, int], ...]) -> str:
         """Constant that holds a table of sizes."""
         return self._sizes.setdefault(sizes, f"_SIZES_{len(self._sizes) + 1}")
+
+
+def _takes(layout: Layout, other: Layout) -> bool:
+    """Whether the layout, which has no constants, fits telegrams of its protocol that a constant at the start tells."""
+    if layout.protocol != other.protocol or any(field.constant is not None for field in layout.fields):
+        return False
+    (least, most), (other_least, other_most) = _sizes(layout), _sizes(other)
+    return other.fields[0].constant is not None and least <= other_most and other_least <= most
+
+
+def _sizes(layout: Layout) -> tuple[float, float]:
+    """Bytes of the shortest and of the longest telegram."""
+    lengths = [field.length for field in layout.fields]
+    least = sum(length for length in lengths if isinstance(length, int))
+    return least, least if all(isinstance(length, int) for length in lengths) else inf
 
 
 def class_name(layout: Layout) -> str:

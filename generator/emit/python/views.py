@@ -172,6 +172,7 @@ class DeviceView:
     index_base: str
     ignored_mask: str
     has_error_fields: bool
+    error_kinds: str
     groups: tuple[GroupView, ...]
     enums: tuple[EnumView, ...]
     enum_bases: str
