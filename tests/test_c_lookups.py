@@ -1,13 +1,14 @@
 """Arithmetic and lookups of the C headers: run over whole domains and compared with the model."""
 
 import random
+import re
 from dataclasses import replace
 from fractions import Fraction
 from math import floor
 from pathlib import Path
 
 import pytest
-from test_c import COMPILERS, Values, assert_same, compile_c, run, write
+from test_c import COMPILERS, Values, assert_same, compile_c, highest_node, run, write
 
 from generator.emit.c.common import ERROR_KINDS
 from generator.emit.c.panel import LIGHTS
@@ -147,7 +148,56 @@ def test_reported_errors_whatever_their_response_and_instance(model: Model, c: P
     assert tried
 
 
+# COB-IDs.
+
+
+def test_cob_ids_of_each_node_and_of_no_other(model: Model, c: Path, tmp_path: Path) -> None:
+    body, expected = "    uint32_t value = 0u;\n", {}
+    for entry in model.cob_ids:
+        if entry.broadcast:
+            continue
+        macro = f"DRIVESPEC_COB_ID_{screaming(entry.name)}_BASE"
+        body += (
+            "    for (uint32_t node = 0u; node <= 600u; node++) {\n"
+            "        value = 9u;\n"
+            f"        const int done = (int)drivespec_at_node({macro}, node, &value);\n"
+            f'        printf("{entry.name} %lu=%d %lu\\n", (unsigned long)node, done, (unsigned long)value);\n'
+            "    }\n"
+        )
+        for node in range(601):
+            legal = 1 <= node <= highest_node(model)
+            expected[f"{entry.name} {node}"] = f"1 {entry.base + node}" if legal else "0 9"
+    assert expected
+    assert_same(result(tmp_path, c, ["drivespec.h"], body), dict(expected))
+
+
+def test_comments_tell_broadcasts_from_bases(model: Model, c: Path) -> None:
+    text = (c / "include/drivespec/drivespec.h").read_text(encoding="ascii")
+    for entry in model.cob_ids:
+        comment = re.search(rf"DRIVESPEC_COB_ID_{screaming(entry.name)}(_BASE)? .*///< (.*)", text)
+        assert comment
+        assert ("broadcast: the whole COB-ID" in comment[2]) == entry.broadcast
+        assert ("less the node address" in comment[2]) != entry.broadcast
+
+
 # Codes.
+
+
+def test_numbers_and_indexes_that_are_none(model: Model, c: Path, tmp_path: Path) -> None:
+    """They give 0, which no code has for a number or an index; nothing wraps around."""
+    assert all(code.number and code.index for device in model.devices for code in device.codes)
+    body = ""
+    expected: dict[str, int | str] = {}
+    for drive in model.drives:
+        for function in (f"{snake(drive.id)}_index", f"{snake(drive.id)}_code"):
+            body += (
+                "    for (uint32_t n = 0u; n <= 0xFFFFu; n++) {\n"
+                f'        printf("{function} %lu=%u\\n", (unsigned long)n, (unsigned){function}((uint16_t)n));\n'
+                "    }\n"
+            )
+            expected |= {f"{function} {n}": max(drive.index_base - n, 0) for n in range(2**16)}
+    assert expected
+    assert_same(result(tmp_path, c, ["drivespec.h"], body), dict(expected))
 
 
 def test_index_and_slot_of_each_code(model: Model, c: Path, tmp_path: Path) -> None:
@@ -246,14 +296,12 @@ def test_values_that_no_wire_value_is_near_to(model: Model, c: Path, tmp_path: P
     for name, text in (("nan", "zero / zero"), ("inf", "1.0e300 * 1.0e300"), ("minus", "-1.0e300")):
         body += f'    printf("{name}=%d\\n", (int)drivespec_to_wire({record}, {text}, &wire));\n'
     body += '    printf("wire=%lld\\n", (long long)wire);\n'
-    body += '    printf("node=%lu\\n", (unsigned long)drivespec_at_node(UINT32_C(0x180), 127u));\n'
     body = body.replace("1.0e300 * 1.0e300", "1.0e300")
     assert result(tmp_path, c, [f"{device.id}_tables.h"], body) == {
         "nan": 0,
         "inf": 0,
         "minus": 0,
         "wire": 7,
-        "node": 0x180 + 127,
     }
 
 
