@@ -2,6 +2,7 @@
 
 import random
 import re
+from collections.abc import Iterator
 from dataclasses import replace
 from fractions import Fraction
 from math import floor
@@ -13,7 +14,7 @@ from test_c import COMPILERS, Values, assert_same, compile_c, highest_node, run,
 from generator.emit.c.common import ERROR_KINDS
 from generator.emit.c.panel import LIGHTS
 from generator.emit.hashing import perfect_hash
-from generator.model import Code, Device, Light, Model, Pattern, SwitchGroup
+from generator.model import Code, Device, IndicatorTable, Light, Model, Pattern, SwitchGroup
 from generator.naming import screaming, snake
 
 
@@ -373,22 +374,63 @@ def literal(pattern: Pattern) -> str:
     )
 
 
+def agree(printed: Pattern, seen: Pattern) -> bool:
+    """Whether two patterns may be one: nothing that both tell is different."""
+    if Light.ANY in (printed.light, seen.light):
+        return True
+    lights = [Light.ON, Light.FLICKER] if printed.light is Light.ON_OR_FLICKER else []
+    told = [(getattr(printed, key), getattr(seen, key)) for key in ("colour", "period", "flashes", "pause")]
+    return seen.light in (printed.light, *lights) and all(not a or not b or a == b for a, b in told)
+
+
+def fitting_rows(table: IndicatorTable, seen: tuple[Pattern, ...]) -> list[int]:
+    """Places of the rows that fit."""
+    pairs = [zip(row.patterns, seen, strict=True) for row in table.rows]
+    return [place for place, row in enumerate(pairs) if all(agree(*pair) for pair in row)]
+
+
+def sights(table: IndicatorTable) -> Iterator[tuple[Pattern, ...]]:
+    """What may be seen of LEDs: what is printed, less of it, and what is printed nowhere."""
+    for row in table.rows:
+        yield row.patterns
+        yield tuple(replace(pattern, period=None) for pattern in row.patterns)
+        yield tuple(replace(pattern, flashes=None, pause=None) for pattern in row.patterns)
+        for colour in dict.fromkeys([None, *(pattern.colour for one in table.rows for pattern in one.patterns)]):
+            yield tuple(replace(pattern, colour=colour) for pattern in row.patterns)
+        yield tuple(replace(pattern, period=Fraction(7), flashes=7, pause=Fraction(7)) for pattern in row.patterns)
+        for place in range(len(table.leds)):
+            yield (*row.patterns[:place], Pattern(Light.ANY), *row.patterns[place + 1 :])
+    for light in Light:
+        yield (Pattern(light),) * len(table.leds)
+
+
 def led_program(device: Device) -> tuple[str, Values]:
     body = ""
     expected: Values = {}
     for table in device.indicators:
         name = snake(device.id, "led", table.id)
-        for place, row in enumerate(table.rows):
-            patterns = ", ".join(literal(pattern) for pattern in row.patterns)
-            body += f"    {{\n        const drivespec_pattern seen[] = {{ {patterns} }};\n"
-            body += f"        const {name}_row *const row = {name}_find(seen);\n"
-            body += f'        printf("{name} {place}=%s\\n", row != NULL ? row->state : "-");\n    }}\n'
-            expected[f"{name} {place}"] = row.state
-        absent = ", ".join(literal(Pattern(Light.ANY)) for _ in table.leds)
-        body += f"    {{\n        const drivespec_pattern seen[] = {{ {absent} }};\n"
-        body += f'        printf("{name} unknown=%d\\n", (int)({name}_find(seen) == NULL));\n    }}\n'
-        dull = any(all(pattern.light is Light.ANY for pattern in row.patterns) for row in table.rows)
-        expected[f"{name} unknown"] = int(not dull)
+        body += f'    printf("{name} leds=%u\\n", (unsigned){name.upper()}_COUNT);\n'
+        expected[f"{name} leds"] = len(table.leds)
+        for place, seen in enumerate(dict.fromkeys(sights(table))):
+            fitting = [
+                at
+                for at, row in enumerate(table.rows)
+                if all(agree(*pair) for pair in zip(row.patterns, seen, strict=True))
+            ]
+            body += (
+                "    {\n"
+                f"        const drivespec_pattern seen[] = {{ {', '.join(map(literal, seen))} }};\n"
+                f"        const {name}_row *row = {name}_find(seen);\n"
+                f'        printf("{name} {place}=%d:", row != NULL ? (int)(row - {name}_rows) : -1);\n'
+                "        row = NULL;\n"
+                f"        while ((row = {name}_next(seen, row)) != NULL) {{\n"
+                f'            printf(" %d", (int)(row - {name}_rows));\n'
+                "        }\n"
+                '        printf("\\n");\n'
+                "    }\n"
+            )
+            alone = fitting[0] if len(fitting) == 1 else -1
+            expected[f"{name} {place}"] = "".join([f"{alone}:", *(f" {at}" for at in fitting)])
     return body, expected
 
 
@@ -403,21 +445,32 @@ def test_switches_and_leds(model: Model, c: Path, tmp_path: Path, compiler: str,
         assert_same(printed, settings | states)
 
 
-def test_times_of_leds_that_were_not_measured(model: Model, c: Path, tmp_path: Path) -> None:
-    """A pattern without its times finds a row that has them, and no row of another light."""
-    body, expected = "", {}
+def test_led_patterns_that_fit_no_row_one_and_several(model: Model) -> None:
+    """The tables of the manuals have all three, so that the test above tells them apart."""
+    found = {str(value) for device in model.devices for value in led_program(device)[1].values()}
+    assert "-1:" in found
+    assert any(value.startswith("-1: ") for value in found)
+    assert any(value.startswith("0: 0") for value in found)
+
+
+def test_leds_of_several_colours(model: Model, tmp_path: Path) -> None:
+    device, table = next((d, t) for d in model.devices for t in d.indicators if len(t.rows) > 1)
+    rows = [
+        replace(row, patterns=tuple(replace(pattern, colour=colour) for pattern in row.patterns))
+        for row in table.rows
+        for colour in ("red", "green", None)
+    ]
+    coloured = replace(device, indicators=(replace(table, rows=tuple(rows)),))
+    body, expected = led_program(coloured)
+    c = write(tmp_path / "c", replace(model, devices=(coloured,)))
+    assert_same(result(tmp_path, c, [f"{device.id}_panel.h"], body), expected)
+
+
+def test_leds_are_asked_for_all_at_once(model: Model, c: Path) -> None:
+    """The prototype holds how many patterns are read."""
     for device in model.devices:
         for table in device.indicators:
             name = snake(device.id, "led", table.id)
-            for place, row in enumerate(table.rows):
-                if all(pattern.period is None and pattern.pause is None for pattern in row.patterns):
-                    continue
-                bare = ", ".join(literal(Pattern(p.light, p.colour, None, p.flashes)) for p in row.patterns)
-                key = f"{device.id} {table.id} {place}"
-                body += f"    {{\n        const drivespec_pattern seen[] = {{ {bare} }};\n"
-                body += f'        printf("{key}=%s\\n", {name}_find(seen)->state);\n    }}\n'
-                shapes = [tuple((p.light, p.flashes) for p in other.patterns) for other in table.rows]
-                expected[key] = table.rows[shapes.index(shapes[place])].state
-    assert expected
-    headers = [f"{device.id}_panel.h" for device in model.devices if device.indicators]
-    assert_same(result(tmp_path, c, headers, body), dict(expected))
+            text = (c / f"include/drivespec/{device.id}_panel.h").read_text(encoding="ascii")
+            for function in ("next", "find"):
+                assert f"{name}_{function}(const drivespec_pattern seen[{name.upper()}_COUNT]" in text
