@@ -255,38 +255,102 @@ def test_codes_by_name_through_all_slots(model: Model, c: Path, tmp_path: Path) 
 
 
 def bounds(code: Code) -> tuple[Fraction, Fraction] | None:
-    """Range of a code in wire values."""
+    """Range of a code in its unit."""
+    held = holds(code)
     if code.range is not None:
-        return code.range.low * (code.scaling or 1), code.range.high * (code.scaling or 1)
-    if not code.data_type.is_number:
-        return None
-    return Fraction(code.data_type.lowest), Fraction(min(code.data_type.highest, 2**63 - 1))
+        return code.range.low, code.range.high
+    return held and (Fraction(held[0], code.scaling or 1), Fraction(held[1], code.scaling or 1))
 
 
-def test_values_to_wire_values_and_back(model: Model, c: Path, tmp_path: Path) -> None:
+def holds(code: Code) -> tuple[int, int] | None:
+    """Least and largest wire value of the data type, as far as 64 bits with sign hold it."""
+    kind = code.data_type
+    return (kind.lowest, min(kind.highest, 2**63 - 1)) if kind.is_number else None
+
+
+def nearest(value: Fraction) -> int:
+    """Nearest whole number, halves away from 0."""
+    return int(abs(value) + Fraction(1, 2)) * (-1 if value < 0 else 1)
+
+
+def test_values_to_wire_values(model: Model, c: Path, tmp_path: Path) -> None:
+    """The range is that of the value, not of the wire value that it would be rounded to."""
+    rounded_into_range = 0
     for device in model.devices:
-        if not device.codes:
-            continue
-        body, expected = "    int64_t wire = 0;\n    double value = 0.0;\n", {}
+        body, expected = "    int64_t wire = 0;\n", {}
         for code in device.codes:
-            limits = bounds(code)
-            factor = code.scaling or 1
-            ends = [0, 1] if limits is None else [floor(limits[0]), floor(limits[1]), floor(sum(limits) / 2)]
+            limits, factor = bounds(code), code.scaling or 1
+            ends = [0, 1] if limits is None else [floor(end * factor) for end in (*limits, sum(limits) / 2)]
+            steps = (-1, -0.6, -0.4, 0, 0.4, 0.5 if factor == 1 else 0.6, 1)
+            for value in sorted({(end + step) / factor for end in ends for step in steps if abs(end) < 2**40}):
+                inside = limits is not None and float(limits[0]) <= value <= float(limits[1])
+                wire = nearest(Fraction(value) * factor)
+                if limits is not None and not inside:
+                    rounded_into_range += limits[0] <= Fraction(wire, factor) <= limits[1]
+                key = f"{code.number} {value!r}"
+                body += f'    wire = 99;\n    printf("{key}=%d ", '
+                body += f"(int)drivespec_to_wire({device.id}_find_code({code.number}u), {value!r}, &wire));\n"
+                body += '    printf("%lld\\n", (long long)wire);\n'
+                expected[key] = f"{int(inside)} {wire if inside else 99}"
+        if device.codes:
+            assert_same(result(tmp_path, c, [f"{device.id}_tables.h"], body), dict(expected))
+    assert rounded_into_range
+
+
+def test_wire_values_to_values(model: Model, c: Path, tmp_path: Path) -> None:
+    """A drive may hold a value outside of the range of its setting; only what the data type cannot hold is refused."""
+    outside = 0
+    for device in model.devices:
+        body, expected = "    double value = 0.0;\n", {}
+        for code in device.codes:
+            limits, held, factor = bounds(code), holds(code), code.scaling or 1
+            ends = [*(floor(end * factor) for end in limits or ()), *(held or ()), 0]
             for wire in sorted({end + step for end in ends for step in (-1, 0, 1)}):
                 if abs(wire) > 2**40:
                     continue
-                inside = limits is not None and limits[0] <= wire <= limits[1]
+                fits = held is not None and held[0] <= wire <= held[1]
+                outside += fits and limits is not None and not limits[0] <= Fraction(wire, factor) <= limits[1]
                 key = f"{code.number} {wire}"
-                record = f"{device.id}_find_code({code.number}u)"
-                towards_zero = "" if wire == 0 else " - 0.4" if wire > 0 else " + 0.4"
-                body += f"    value = ({wire}.0{towards_zero}) / {factor}.0;\n    wire = 99;\n"
-                body += f'    printf("to {key}=%d ", (int)drivespec_to_wire({record}, value, &wire));\n'
-                body += '    printf("%lld\\n", (long long)wire);\n    value = 0.5;\n'
-                body += f'    printf("from {key}=%d ", (int)drivespec_from_wire({record}, INT64_C({wire}), &value));\n'
-                body += f'    printf("%d\\n", (int)(value == {wire}.0 / {factor}.0));\n'
-                expected[f"to {key}"] = f"{int(inside)} {wire if inside else 99}"
-                expected[f"from {key}"] = f"{int(inside)} {int(inside or Fraction(wire, factor) == Fraction(1, 2))}"
-        assert_same(result(tmp_path, c, [f"{device.id}_tables.h"], body), dict(expected))
+                body += "    value = 0.3125;\n"
+                body += f'    printf("{key}=%d ", (int)drivespec_from_wire({device.id}_find_code({code.number}u), '
+                body += f'INT64_C({wire}), &value));\n    printf("%.17g\\n", value);\n'
+                expected[key] = f"{int(fits)} {wire / factor if fits else 0.3125:.17g}"
+        if device.codes:
+            assert_same(result(tmp_path, c, [f"{device.id}_tables.h"], body), dict(expected))
+    assert outside
+
+
+def test_values_beside_their_limits_and_between_wire_values(model: Model, c: Path, tmp_path: Path) -> None:
+    device = next(d for d in model.devices if d.codes)
+    cases = [
+        # Least and largest wire value, scaling, value, wire value: 0.29 * 100 is less than 29 in double.
+        (29, 57, 100, "0.29", 29),
+        (29, 57, 100, "0.57", 57),
+        (29, 57, 100, "0.2899999", None),
+        (29, 57, 100, "0.5700001", None),
+        (250, 1000, 0, "249.6", None),
+        (250, 1000, 0, "250.4", 250),
+        (250, 1000, 0, "1000.4", None),
+        # Where adding a half is not exact.
+        (-(2**60), 2**60, 1, "0.49999999999999994", 0),
+        (-(2**60), 2**60, 1, "4503599627370497.0", 2**52 + 1),
+        (-(2**60), 2**60, 1, "-4503599627370497.0", -(2**52) - 1),
+        (-(2**60), 2**60, 1, "-0.5", -1),
+    ]
+    body = (
+        f"    drivespec_code code = {device.id}_codes[0];\n    int64_t wire = 0;\n    code.has = DRIVESPEC_HAS_RANGE;\n"
+    )
+    expected: Values = {}
+    for low, high, scaling, value, wire in cases:
+        body += f"    code.min = INT64_C({low});\n    code.max = INT64_C({high});\n    code.scaling = {scaling}u;\n"
+        body += f'    wire = 9;\n    printf("{low} {value}=%d ", (int)drivespec_to_wire(&code, {value}, &wire));\n'
+        body += '    printf("%lld\\n", (long long)wire);\n'
+        expected[f"{low} {value}"] = "0 9" if wire is None else f"1 {wire}"
+    for wire in (249, 250, 1000, 1001):
+        body += "    code.min = 250;\n    code.max = 1000;\n"
+        body += f'    printf("{wire}=%d\\n", (int)drivespec_in_range(&code, {wire}));\n'
+        expected[str(wire)] = int(250 <= wire <= 1000)
+    assert_same(result(tmp_path, c, [f"{device.id}_tables.h"], body), expected)
 
 
 def test_values_that_no_wire_value_is_near_to(model: Model, c: Path, tmp_path: Path) -> None:

@@ -337,41 +337,69 @@ static inline bool drivespec_type_limits(uint16_t type, int64_t *min, int64_t *m
     }
 }
 
+/** Least and largest wire value of a code or, where no range is printed, of its data type; false where it has none. */
+static inline bool drivespec_limits(const drivespec_code *code, int64_t *min, int64_t *max)
+{
+    if ((code->has & DRIVESPEC_HAS_RANGE) == 0u) {
+        return drivespec_type_limits(code->type, min, max);
+    }
+    *min = code->min;
+    *max = code->max;
+    return true;
+}
+
 /** Whether a wire value is inside the range of a code or, where none is printed, of its data type. */
 static inline bool drivespec_in_range(const drivespec_code *code, int64_t wire)
 {
-    int64_t min = code->min;
-    int64_t max = code->max;
+    int64_t min = 0;
+    int64_t max = 0;
 
-    if (((code->has & DRIVESPEC_HAS_RANGE) == 0u) && !drivespec_type_limits(code->type, &min, &max)) {
-        return false;
-    }
-    return (min <= wire) && (wire <= max);
+    return drivespec_limits(code, &min, &max) && (min <= wire) && (wire <= max);
 }
 
-/** Wire value nearest to a value in its unit; false, and @p wire as it was, where it is out of range. */
+/** Scaling of a code, 1 where none is printed. */
+static inline double drivespec_factor(const drivespec_code *code)
+{
+    return (code->scaling > 0u) ? (double)code->scaling : 1.0;
+}
+
+/**
+ * Wire value nearest to a value in its unit, halves away from 0; false, and @p wire as it was, where the value is out of
+ * the range of the code or, where none is printed, of its data type. The range is that of the value before rounding.
+ */
 static inline bool drivespec_to_wire(const drivespec_code *code, double value, int64_t *wire)
 {
-    const double exact = value * ((code->scaling > 0u) ? (double)code->scaling : 1.0);
+    const double factor = drivespec_factor(code);
+    const double exact = value * factor;
+    int64_t min = 0;
+    int64_t max = 0;
 
-    /* Also false for what is no number; the bounds are whole in double. */
-    if ((exact > -9.2e18) && (exact < 9.2e18)) {
-        const int64_t nearest = (int64_t)((exact < 0.0) ? exact - 0.5 : exact + 0.5);
-        if (drivespec_in_range(code, nearest)) {
-            *wire = nearest;
-            return true;
-        }
+    if (!drivespec_limits(code, &min, &max)) {
+        return false;
+    }
+    /* The limits are divided, as a product may lie beside them; all comparisons are false for what is no number. */
+    if ((value >= (double)min / factor) && (value <= (double)max / factor) && (exact > -9.2e18) && (exact < 9.2e18)) {
+        const int64_t whole = (int64_t)exact;
+        const double rest = exact - (double)whole;
+        *wire = whole + (int64_t)(rest >= 0.5) - (int64_t)(rest <= -0.5);
+        return true;
     }
     return false;
 }
 
-/** Value in its unit; false, and @p value as it was, where the wire value is out of range. */
+/**
+ * Value in its unit, in the range of the code or not; false, and @p value as it was, where the code holds no number or its
+ * data type not this one.
+ */
 static inline bool drivespec_from_wire(const drivespec_code *code, int64_t wire, double *value)
 {
-    if (!drivespec_in_range(code, wire)) {
+    int64_t min = 0;
+    int64_t max = 0;
+
+    if (!drivespec_type_limits(code->type, &min, &max) || (wire < min) || (wire > max)) {
         return false;
     }
-    *value = (double)wire / ((code->scaling > 0u) ? (double)code->scaling : 1.0);
+    *value = (double)wire / drivespec_factor(code);
     return true;
 }
 
