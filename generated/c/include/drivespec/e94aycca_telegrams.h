@@ -49,6 +49,7 @@ typedef enum e94aycca_sdo_command_cs {
  * Parameter data telegram.
  * Writing and reading up to four bytes, the answers to both, and the start of a block, whose length then stands in the
  * data.
+ * Try e94aycca_sdo_error_decode first: its telegrams (Command 0x80) decode as these, too.
  * SDO. EDS94AYCCA-EN-5.0, 9.2 p. 63.
  * Erratum motorola-format: printed: Motorola format (9.2, note p. 63), Low byte, High byte; Low word, High word (9.2,
  * table p. 63), index 0x5FC2 as 0xC2 0x5F (9.3.1, example p. 69); used: low byte first.
