@@ -564,6 +564,22 @@ def test_comments_say_where_facts_come_from(model: Model, c: Path) -> None:
                 assert "used: " in comment.partition(f"Erratum {name}: ")[2], title
 
 
+def test_comments_say_what_no_record_holds(model: Model, c: Path) -> None:
+    """Causes, remedies and the codes that set a response, which the README sends the reader to the comments for."""
+    seen = set()
+    for device in model.devices:
+        text = (c / f"include/drivespec/{device.id}.h").read_text(encoding="ascii")
+        for error in device.errors:
+            comment = block(text, f"0x{error.number:0{error_digits(error, device)}X} {error.name}")
+            facts = [("Cause: ", error.causes), ("Remedy: ", error.remedies)]
+            facts += [("Adjustable in ", tuple(str(ref) for ref in error.adjustable_in[:1]))]
+            for label, texts in facts:
+                plain = [f"{label}{said}".translate(dict.fromkeys(map(ord, "»«"), '"')) for said in texts]
+                assert [said for said in plain if said not in comment] == [], error.name
+                seen |= {label for _ in texts}
+    assert len(seen) == 3
+
+
 def test_the_head_names_source_and_version(model: Model, c: Path) -> None:
     for device in model.devices:
         for suffix in (".h", "_tables.h"):

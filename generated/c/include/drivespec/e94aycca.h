@@ -5537,6 +5537,8 @@ typedef enum e94aycca_i1029_sub1_opt {
 
 /**
  * @name 0x008C0017 MXI1: CAN module is missing or is incompatible
+ * Cause: The application does not support the CANopen module in slot MXI1.
+ * Remedy: Use a communication module that the application supports.
  * Preset response: Fault. Selectable: Fault.
  * EDS94AYCCA-EN-5.0, 12.2 p. 91.
  * Erratum module-error-not-adjustable: printed: Can be set in: - (12.1, both numbers p. 89), Setting: not possible
@@ -5551,6 +5553,8 @@ typedef enum e94aycca_i1029_sub1_opt {
 
 /**
  * @name 0x008C0018 MXI2: CAN module is missing or is incompatible
+ * Cause: The application does not support the CANopen module in slot MXI2.
+ * Remedy: Use a communication module that the application supports.
  * Preset response: Fault. Selectable: Fault.
  * EDS94AYCCA-EN-5.0, 12.2 p. 91.
  * Erratum module-error-not-adjustable: printed: Can be set in: - (12.1, both numbers p. 89), Setting: not possible
@@ -5566,6 +5570,12 @@ typedef enum e94aycca_i1029_sub1_opt {
 /**
  * @name 0x009D0000 CAN module (MXI1): bus-off
  * The CANopen module in this slot is in the "bus-off" state.
+ * Cause: The cable is defective, for example by a loose contact.
+ * Cause: The module in this slot received too many faulty telegrams.
+ * Cause: Two CAN nodes share one node address.
+ * Remedy: Remove interference from the surroundings, for example poor EMC.
+ * Remedy: Repair the loose contact and tighten the adapter.
+ * Remedy: Give each node an address of its own.
  * Preset response: Information. Selectable: None, Fault, Trouble, Quick stop by trouble, Warning locked, Warning,
  * Information. Adjustable in C13595.
  * EDS94AYCCA-EN-5.0, 12.2 p. 91.
@@ -5577,6 +5587,8 @@ typedef enum e94aycca_i1029_sub1_opt {
 /**
  * @name 0x009D0001 CAN module (MXI1): invalid node address 0
  * Error of initialisation: node address 1 is used, since 0 is not permitted.
+ * Cause: The DIP switches are to set the node address of the module in this slot, but all of them stand at 0.
+ * Remedy: Set a node address other than 0, then switch the mains off and on.
  * Preset response: Warning. Selectable: Warning.
  * EDS94AYCCA-EN-5.0, 12.2 p. 91.
  * Erratum all-switches-off: printed: C13350 / 14350: Switches 1 ... 64 = OFF (6.2.1, table p. 33), all set to "0";
@@ -5590,6 +5602,10 @@ typedef enum e94aycca_i1029_sub1_opt {
 /**
  * @name 0x009D0002 CAN module (MXI1): basic configuration invalid
  * Configuration error of the CANopen module in this slot.
+ * Cause: The download of the "Engineer" or "PLC Designer" project was faulty.
+ * Cause: The "Engineer" or "PLC Designer" project holds CAN settings that DS301 V4.02 does not allow.
+ * Remedy: Download the project again.
+ * Remedy: Correct the CAN settings of the project, then generate the project anew.
  * Preset response: Warning locked. Selectable: Warning locked.
  * EDS94AYCCA-EN-5.0, 12.2 p. 92.
  * @{
@@ -5600,6 +5616,12 @@ typedef enum e94aycca_i1029_sub1_opt {
 /**
  * @name 0x009E0000 CAN module (MXI1): heartbeat error index 1 ... 32
  * Cyclic node monitoring; the run holds one number for each of the indices 1 ... 32.
+ * Cause: One of the nodes 1 ... 32 sent no heartbeat telegram to the module in this slot within the time set.
+ * Remedy: Reactivate the CAN node: switch the mains off and on, restart the controller (C00002 = 11000) or reset the
+ * node (C00002 = 92).
+ * Remedy: Set the monitoring time for the heartbeat producer anew or switch the monitoring off.
+ * Remedy: Reset the error status if it is still active.
+ * Remedy: Save the parameter set (C00002 = 11) before you switch the mains or restart the controller.
  * Preset response: No response. Selectable: None, Fault, Trouble, Quick stop by trouble, Warning locked, Warning,
  * Information. Adjustable in C13613/1...32.
  * EDS94AYCCA-EN-5.0, 12.2 p. 92.
@@ -5622,6 +5644,9 @@ typedef enum e94aycca_i1029_sub1_opt {
 /**
  * @name 0x009E0020 CAN module (MXI1): life guarding error
  * Cyclic node monitoring.
+ * Cause: The module in this slot is a slave, and the longest time allowed between two node guarding telegrams (RTR) of
+ * the master ran out.
+ * Remedy: Set the life guarding time anew or switch the monitoring off.
  * Preset response: No response. Selectable: None, Fault, Trouble, Quick stop by trouble, Warning locked, Warning,
  * Information. Adjustable in C13614.
  * EDS94AYCCA-EN-5.0, 12.2 p. 92.
@@ -5633,6 +5658,11 @@ typedef enum e94aycca_i1029_sub1_opt {
 /**
  * @name 0x009E0021 CAN module (MXI1): NMT slave configuration incomplete
  * Configuration error in the network management of the slave in this slot.
+ * Cause: The download of the "Engineer" or "PLC Designer" project was faulty.
+ * Cause: The "Engineer" or "PLC Designer" project holds CAN settings that DS301 V4.02 does not allow.
+ * Cause: Node guarding or heartbeat is set wrongly.
+ * Remedy: Download the project again.
+ * Remedy: Correct the CAN settings of the project, then generate the project anew.
  * Preset response: Warning locked. Selectable: Warning locked.
  * EDS94AYCCA-EN-5.0, 12.2 p. 92.
  * Erratum error-configuration-faulty: printed (detail): ... faulty; used: ... incomplete.
@@ -5644,6 +5674,10 @@ typedef enum e94aycca_i1029_sub1_opt {
 /**
  * @name 0x009F0000 CAN module (MXI1): emergency configuration incomplete
  * The emergency configuration of the module in this slot is faulty.
+ * Cause: The download of the "Engineer" or "PLC Designer" project was faulty.
+ * Cause: The "Engineer" or "PLC Designer" project holds CAN settings that DS301 V4.02 does not allow.
+ * Remedy: Download the project again.
+ * Remedy: Correct the CAN settings of the project, then generate the project anew.
  * Preset response: Warning locked. Selectable: Warning locked.
  * EDS94AYCCA-EN-5.0, 12.2 p. 93.
  * Erratum error-configuration-faulty: printed (detail): ... faulty; used: ... incomplete.
@@ -5655,6 +5689,13 @@ typedef enum e94aycca_i1029_sub1_opt {
 /**
  * @name 0x00A00000 CAN module (MXI1): node guarding error 1 ... 32
  * Cyclic node monitoring; the run holds one number for each of the nodes 1 ... 32.
+ * Cause: One of the nodes 1 ... 32 did not answer a node guarding telegram (RTR) of the master in this slot within the
+ * time set.
+ * Remedy: Reactivate the CAN node: switch the mains off and on, restart the controller (C00002 = 11000) or reset the
+ * node (C00002 = 92).
+ * Remedy: Set the node guarding time anew or switch the monitoring off.
+ * Remedy: Reset the error status if it is still active.
+ * Remedy: Save the parameter set (C00002 = 11) before you switch the mains or restart the controller.
  * Preset response: No response. Selectable: None, Fault, Trouble, Quick stop by trouble, Warning locked, Warning,
  * Information. Adjustable in C13612/1...32.
  * EDS94AYCCA-EN-5.0, 12.2 p. 93.
@@ -5674,6 +5715,11 @@ typedef enum e94aycca_i1029_sub1_opt {
 /**
  * @name 0x00A00020 CAN module (MXI1): NMT master configuration incomplete
  * Configuration error in the network management of the master in this slot.
+ * Cause: The download of the "Engineer" or "PLC Designer" project was faulty.
+ * Cause: The "Engineer" or "PLC Designer" project holds CAN settings that DS301 V4.02 does not allow.
+ * Cause: Node guarding or heartbeat is set wrongly.
+ * Remedy: Download the project again.
+ * Remedy: Correct the CAN settings of the project, then generate the project anew.
  * Preset response: Warning locked. Selectable: Warning locked.
  * EDS94AYCCA-EN-5.0, 12.2 p. 93.
  * Erratum error-configuration-faulty: printed (detail): ... faulty; used: ... incomplete.
@@ -5685,6 +5731,12 @@ typedef enum e94aycca_i1029_sub1_opt {
 /**
  * @name 0x00A10000 CAN module (MXI1) RPDO1: telegram n. received or faulty
  * Error of CAN-IN1 in this slot.
+ * Cause: The received PDO has the wrong length.
+ * Cause: An error occurred during the transmission.
+ * Cause: The time monitoring of the PDO has responded.
+ * Remedy: Set the right telegram length in the CAN master, which transmits the PDO.
+ * Remedy: Remove interference from the surroundings, for example poor EMC.
+ * Remedy: Choose another monitoring time or switch the time monitoring off.
  * Preset response: No response. Selectable: None, Fault, Trouble, Quick stop by trouble, Warning locked, Warning,
  * Information. Adjustable in C13591/1.
  * EDS94AYCCA-EN-5.0, 12.2 p. 93.
@@ -5699,6 +5751,12 @@ typedef enum e94aycca_i1029_sub1_opt {
 /**
  * @name 0x00A10001 CAN module (MXI1) RPDO2: telegram n. received or faulty
  * Error of CAN-IN2 in this slot.
+ * Cause: The received PDO has the wrong length.
+ * Cause: An error occurred during the transmission.
+ * Cause: The time monitoring of the PDO has responded.
+ * Remedy: Set the right telegram length in the CAN master, which transmits the PDO.
+ * Remedy: Remove interference from the surroundings, for example poor EMC.
+ * Remedy: Choose another monitoring time or switch the time monitoring off.
  * Preset response: No response. Selectable: None, Fault, Trouble, Quick stop by trouble, Warning locked, Warning,
  * Information. Adjustable in C13591/2.
  * EDS94AYCCA-EN-5.0, 12.2 p. 94.
@@ -5713,6 +5771,12 @@ typedef enum e94aycca_i1029_sub1_opt {
 /**
  * @name 0x00A10002 CAN module (MXI1) RPDO3: telegram n. received or faulty
  * Error of CAN-IN3 in this slot.
+ * Cause: The received PDO has the wrong length.
+ * Cause: An error occurred during the transmission.
+ * Cause: The time monitoring of the PDO has responded.
+ * Remedy: Set the right telegram length in the CAN master, which transmits the PDO.
+ * Remedy: Remove interference from the surroundings, for example poor EMC.
+ * Remedy: Choose another monitoring time or switch the time monitoring off.
  * Preset response: No response. Selectable: None, Fault, Trouble, Quick stop by trouble, Warning locked, Warning,
  * Information. Adjustable in C13591/3.
  * EDS94AYCCA-EN-5.0, 12.2 p. 94.
@@ -5727,6 +5791,12 @@ typedef enum e94aycca_i1029_sub1_opt {
 /**
  * @name 0x00A10003 CAN module (MXI1) RPDO4: telegram n. received or faulty
  * Error of CAN-IN4 in this slot.
+ * Cause: The received PDO has the wrong length.
+ * Cause: An error occurred during the transmission.
+ * Cause: The time monitoring of the PDO has responded.
+ * Remedy: Set the right telegram length in the CAN master, which transmits the PDO.
+ * Remedy: Remove interference from the surroundings, for example poor EMC.
+ * Remedy: Choose another monitoring time or switch the time monitoring off.
  * Preset response: No response. Selectable: None, Fault, Trouble, Quick stop by trouble, Warning locked, Warning,
  * Information. Adjustable in C13591/4.
  * EDS94AYCCA-EN-5.0, 12.2 p. 94.
@@ -5741,6 +5811,12 @@ typedef enum e94aycca_i1029_sub1_opt {
 /**
  * @name 0x00A10004 CAN module (MXI1) RPDO5: telegram n. received or faulty
  * Error of CAN-IN5 in this slot.
+ * Cause: The received PDO has the wrong length.
+ * Cause: An error occurred during the transmission.
+ * Cause: The time monitoring of the PDO has responded.
+ * Remedy: Set the right telegram length in the CAN master, which transmits the PDO.
+ * Remedy: Remove interference from the surroundings, for example poor EMC.
+ * Remedy: Choose another monitoring time or switch the time monitoring off.
  * Preset response: No response. Selectable: None, Fault, Trouble, Quick stop by trouble, Warning locked, Warning,
  * Information.
  * EDS94AYCCA-EN-5.0, 12.2 p. 94.
@@ -5758,6 +5834,12 @@ typedef enum e94aycca_i1029_sub1_opt {
 /**
  * @name 0x00A10005 CAN module (MXI1) RPDO6: telegram n. received or faulty
  * Error of CAN-IN6 in this slot.
+ * Cause: The received PDO has the wrong length.
+ * Cause: An error occurred during the transmission.
+ * Cause: The time monitoring of the PDO has responded.
+ * Remedy: Set the right telegram length in the CAN master, which transmits the PDO.
+ * Remedy: Remove interference from the surroundings, for example poor EMC.
+ * Remedy: Choose another monitoring time or switch the time monitoring off.
  * Preset response: No response. Selectable: None, Fault, Trouble, Quick stop by trouble, Warning locked, Warning,
  * Information.
  * EDS94AYCCA-EN-5.0, 12.2 p. 94.
@@ -5775,6 +5857,12 @@ typedef enum e94aycca_i1029_sub1_opt {
 /**
  * @name 0x00A10006 CAN module (MXI1) RPDO7: telegram n. received or faulty
  * Error of CAN-IN7 in this slot.
+ * Cause: The received PDO has the wrong length.
+ * Cause: An error occurred during the transmission.
+ * Cause: The time monitoring of the PDO has responded.
+ * Remedy: Set the right telegram length in the CAN master, which transmits the PDO.
+ * Remedy: Remove interference from the surroundings, for example poor EMC.
+ * Remedy: Choose another monitoring time or switch the time monitoring off.
  * Preset response: No response. Selectable: None, Fault, Trouble, Quick stop by trouble, Warning locked, Warning,
  * Information.
  * EDS94AYCCA-EN-5.0, 12.2 p. 95.
@@ -5792,6 +5880,12 @@ typedef enum e94aycca_i1029_sub1_opt {
 /**
  * @name 0x00A10007 CAN module (MXI1) RPDO8: telegram n. received or faulty
  * Error of CAN-IN8 in this slot.
+ * Cause: The received PDO has the wrong length.
+ * Cause: An error occurred during the transmission.
+ * Cause: The time monitoring of the PDO has responded.
+ * Remedy: Set the right telegram length in the CAN master, which transmits the PDO.
+ * Remedy: Remove interference from the surroundings, for example poor EMC.
+ * Remedy: Choose another monitoring time or switch the time monitoring off.
  * Preset response: No response. Selectable: None, Fault, Trouble, Quick stop by trouble, Warning locked, Warning,
  * Information.
  * EDS94AYCCA-EN-5.0, 12.2 p. 95.
@@ -5809,6 +5903,11 @@ typedef enum e94aycca_i1029_sub1_opt {
 /**
  * @name 0x00A10008 CAN module (MXI1) PDO manager: configuration incomplete
  * Error in the PDO configuration of the module in this slot.
+ * Cause: The download of the project was faulty.
+ * Cause: The "Engineer" or "PLC Designer" project holds CAN settings that DS301 V4.02 does not allow.
+ * Cause: Mapping variables carry CANopen indices that do not agree with DS405.
+ * Remedy: Download the project again.
+ * Remedy: Correct the CAN settings of the project, then generate the project anew.
  * Preset response: Warning locked. Selectable: Warning locked.
  * EDS94AYCCA-EN-5.0, 12.2 p. 95.
  * Erratum error-configuration-faulty: printed (detail): ... faulty; used: ... incomplete.
@@ -5820,6 +5919,10 @@ typedef enum e94aycca_i1029_sub1_opt {
 /**
  * @name 0x00A20000 CAN module (MXI1) SDO server: configuration incomplete
  * Configuration error of the SDO server in this slot.
+ * Cause: The download of the project was faulty.
+ * Cause: The "Engineer" or "PLC Designer" project holds SDO server settings that DS301 V4.02 does not allow.
+ * Remedy: Download the project again.
+ * Remedy: Correct the CAN settings of the project, then generate the project anew.
  * Preset response: Warning locked. Selectable: Warning locked.
  * EDS94AYCCA-EN-5.0, 12.2 p. 95.
  * Erratum error-configuration-faulty: printed (detail): ... faulty; used: ... incomplete.
@@ -5831,6 +5934,10 @@ typedef enum e94aycca_i1029_sub1_opt {
 /**
  * @name 0x00A30000 CAN module (MXI1) SDO client: configuration incomplete
  * Configuration error of the SDO client in this slot.
+ * Cause: The download of the project was faulty.
+ * Cause: The "Engineer" or "PLC Designer" project holds SDO client settings that DS301 V4.02 does not allow.
+ * Remedy: Download the project again.
+ * Remedy: Correct the CAN settings of the project, then generate the project anew.
  * Preset response: Warning locked. Selectable: Warning locked.
  * EDS94AYCCA-EN-5.0, 12.2 p. 96.
  * Erratum error-configuration-faulty: printed (detail): ... faulty; used: ... incomplete.
@@ -5842,6 +5949,12 @@ typedef enum e94aycca_i1029_sub1_opt {
 /**
  * @name 0x00AC0000 CAN module (MXI2): bus-off
  * The CANopen module in this slot is in the "bus-off" state.
+ * Cause: The cable is defective, for example by a loose contact.
+ * Cause: The module in this slot received too many faulty telegrams.
+ * Cause: Two CAN nodes share one node address.
+ * Remedy: Remove interference from the surroundings, for example poor EMC.
+ * Remedy: Repair the loose contact and tighten the adapter.
+ * Remedy: Give each node an address of its own.
  * Preset response: Information. Selectable: None, Fault, Trouble, Quick stop by trouble, Warning locked, Warning,
  * Information. Adjustable in C14595.
  * EDS94AYCCA-EN-5.0, 12.2 p. 96.
@@ -5853,6 +5966,8 @@ typedef enum e94aycca_i1029_sub1_opt {
 /**
  * @name 0x00AC0001 CAN module (MXI2): invalid node address 0
  * Error of initialisation: node address 1 is used, since 0 is not permitted.
+ * Cause: The DIP switches are to set the node address of the module in this slot, but all of them stand at 0.
+ * Remedy: Set a node address other than 0, then switch the mains off and on.
  * Preset response: Warning. Selectable: Warning.
  * EDS94AYCCA-EN-5.0, 12.2 p. 96.
  * Erratum all-switches-off: printed: C13350 / 14350: Switches 1 ... 64 = OFF (6.2.1, table p. 33), all set to "0";
@@ -5866,6 +5981,10 @@ typedef enum e94aycca_i1029_sub1_opt {
 /**
  * @name 0x00AC0002 CAN module (MXI2): basic configuration invalid
  * Configuration error of the CANopen module in this slot.
+ * Cause: The download of the "Engineer" or "PLC Designer" project was faulty.
+ * Cause: The "Engineer" or "PLC Designer" project holds CAN settings that DS301 V4.02 does not allow.
+ * Remedy: Download the project again.
+ * Remedy: Correct the CAN settings of the project, then generate the project anew.
  * Preset response: Warning locked. Selectable: Warning locked.
  * EDS94AYCCA-EN-5.0, 12.2 p. 96.
  * @{
@@ -5876,6 +5995,12 @@ typedef enum e94aycca_i1029_sub1_opt {
 /**
  * @name 0x00AD0000 CAN module (MXI2): heartbeat error index 1 ... 32
  * Cyclic node monitoring; the run holds one number for each of the indices 1 ... 32.
+ * Cause: One of the nodes 1 ... 32 sent no heartbeat telegram to the module in this slot within the time set.
+ * Remedy: Reactivate the CAN node: switch the mains off and on, restart the controller (C00002 = 11000) or reset the
+ * node (C00002 = 92).
+ * Remedy: Set the monitoring time for the heartbeat producer anew or switch the monitoring off.
+ * Remedy: Reset the error status if it is still active.
+ * Remedy: Save the parameter set (C00002 = 11) before you switch the mains or restart the controller.
  * Preset response: No response. Selectable: None, Fault, Trouble, Quick stop by trouble, Warning locked, Warning,
  * Information. Adjustable in C14613/1...32.
  * EDS94AYCCA-EN-5.0, 12.2 p. 97.
@@ -5898,6 +6023,9 @@ typedef enum e94aycca_i1029_sub1_opt {
 /**
  * @name 0x00AD0020 CAN module (MXI2): life guarding error
  * Cyclic node monitoring.
+ * Cause: The module in this slot is a slave, and the longest time allowed between two node guarding telegrams (RTR) of
+ * the master ran out.
+ * Remedy: Set the life guarding time anew or switch the monitoring off.
  * Preset response: No response. Selectable: None, Fault, Trouble, Quick stop by trouble, Warning locked, Warning,
  * Information. Adjustable in C14614.
  * EDS94AYCCA-EN-5.0, 12.2 p. 97.
@@ -5910,6 +6038,11 @@ typedef enum e94aycca_i1029_sub1_opt {
 /**
  * @name 0x00AD0021 CAN module (MXI2): NMT slave configuration incomplete
  * Configuration error in the network management of the slave in this slot.
+ * Cause: The download of the "Engineer" or "PLC Designer" project was faulty.
+ * Cause: The "Engineer" or "PLC Designer" project holds CAN settings that DS301 V4.02 does not allow.
+ * Cause: Node guarding or heartbeat is set wrongly.
+ * Remedy: Download the project again.
+ * Remedy: Correct the CAN settings of the project, then generate the project anew.
  * Preset response: Warning locked. Selectable: Warning locked.
  * EDS94AYCCA-EN-5.0, 12.2 p. 97.
  * Erratum dump-mx12-faulty: printed (detail MXI2): ... (MX12)... faulty; used: ... (MXI2)... incomplete.
@@ -5921,6 +6054,10 @@ typedef enum e94aycca_i1029_sub1_opt {
 /**
  * @name 0x00AE0000 CAN module (MXI2): emergency configuration incomplete
  * The emergency configuration of the module in this slot is faulty.
+ * Cause: The download of the "Engineer" or "PLC Designer" project was faulty.
+ * Cause: The "Engineer" or "PLC Designer" project holds CAN settings that DS301 V4.02 does not allow.
+ * Remedy: Download the project again.
+ * Remedy: Correct the CAN settings of the project, then generate the project anew.
  * Preset response: Warning locked. Selectable: Warning locked.
  * EDS94AYCCA-EN-5.0, 12.2 p. 97.
  * Erratum dump-mx12-faulty: printed (detail MXI2): ... (MX12)... faulty; used: ... (MXI2)... incomplete.
@@ -5932,6 +6069,13 @@ typedef enum e94aycca_i1029_sub1_opt {
 /**
  * @name 0x00AF0000 CAN module (MXI2): node guarding error 1 ... 32
  * Cyclic node monitoring; the run holds one number for each of the nodes 1 ... 32.
+ * Cause: One of the nodes 1 ... 32 did not answer a node guarding telegram (RTR) of the master in this slot within the
+ * time set.
+ * Remedy: Reactivate the CAN node: switch the mains off and on, restart the controller (C00002 = 11000) or reset the
+ * node (C00002 = 92).
+ * Remedy: Set the node guarding time anew or switch the monitoring off.
+ * Remedy: Reset the error status if it is still active.
+ * Remedy: Save the parameter set (C00002 = 11) before you switch the mains or restart the controller.
  * Preset response: No response. Selectable: None, Fault, Trouble, Quick stop by trouble, Warning locked, Warning,
  * Information. Adjustable in C14612/1...32.
  * EDS94AYCCA-EN-5.0, 12.2 p. 98.
@@ -5950,6 +6094,11 @@ typedef enum e94aycca_i1029_sub1_opt {
 /**
  * @name 0x00AF0020 CAN module (MXI2): NMT master configuration incomplete
  * Configuration error in the network management of the master in this slot.
+ * Cause: The download of the "Engineer" or "PLC Designer" project was faulty.
+ * Cause: The "Engineer" or "PLC Designer" project holds CAN settings that DS301 V4.02 does not allow.
+ * Cause: Node guarding or heartbeat is set wrongly.
+ * Remedy: Download the project again.
+ * Remedy: Correct the CAN settings of the project, then generate the project anew.
  * Preset response: Warning locked. Selectable: Warning locked.
  * EDS94AYCCA-EN-5.0, 12.2 p. 98.
  * Erratum error-configuration-faulty: printed (detail): ... faulty; used: ... incomplete.
@@ -5961,6 +6110,12 @@ typedef enum e94aycca_i1029_sub1_opt {
 /**
  * @name 0x00B00000 CAN module (MXI2) RPDO1: telegram n. received or faulty
  * Error of CAN-IN1 in this slot.
+ * Cause: The received PDO has the wrong length.
+ * Cause: An error occurred during the transmission.
+ * Cause: The time monitoring of the PDO has responded.
+ * Remedy: Set the right telegram length in the CAN master, which transmits the PDO.
+ * Remedy: Remove interference from the surroundings, for example poor EMC.
+ * Remedy: Choose another monitoring time or switch the time monitoring off.
  * Preset response: No response. Selectable: None, Fault, Trouble, Quick stop by trouble, Warning locked, Warning,
  * Information. Adjustable in C14591/1.
  * EDS94AYCCA-EN-5.0, 12.2 p. 98.
@@ -5974,6 +6129,12 @@ typedef enum e94aycca_i1029_sub1_opt {
 /**
  * @name 0x00B00001 CAN module (MXI2) RPDO2: telegram n. received or faulty
  * Error of CAN-IN2 in this slot.
+ * Cause: The received PDO has the wrong length.
+ * Cause: An error occurred during the transmission.
+ * Cause: The time monitoring of the PDO has responded.
+ * Remedy: Set the right telegram length in the CAN master, which transmits the PDO.
+ * Remedy: Remove interference from the surroundings, for example poor EMC.
+ * Remedy: Choose another monitoring time or switch the time monitoring off.
  * Preset response: No response. Selectable: None, Fault, Trouble, Quick stop by trouble, Warning locked, Warning,
  * Information. Adjustable in C14591/2.
  * EDS94AYCCA-EN-5.0, 12.2 p. 98.
@@ -5987,6 +6148,12 @@ typedef enum e94aycca_i1029_sub1_opt {
 /**
  * @name 0x00B00002 CAN module (MXI2) RPDO3: telegram n. received or faulty
  * Error of CAN-IN3 in this slot.
+ * Cause: The received PDO has the wrong length.
+ * Cause: An error occurred during the transmission.
+ * Cause: The time monitoring of the PDO has responded.
+ * Remedy: Set the right telegram length in the CAN master, which transmits the PDO.
+ * Remedy: Remove interference from the surroundings, for example poor EMC.
+ * Remedy: Choose another monitoring time or switch the time monitoring off.
  * Preset response: No response. Selectable: None, Fault, Trouble, Quick stop by trouble, Warning locked, Warning,
  * Information. Adjustable in C14591/3.
  * EDS94AYCCA-EN-5.0, 12.2 p. 99.
@@ -6000,6 +6167,12 @@ typedef enum e94aycca_i1029_sub1_opt {
 /**
  * @name 0x00B00003 CAN module (MXI2) RPDO4: telegram n. received or faulty
  * Error of CAN-IN4 in this slot.
+ * Cause: The received PDO has the wrong length.
+ * Cause: An error occurred during the transmission.
+ * Cause: The time monitoring of the PDO has responded.
+ * Remedy: Set the right telegram length in the CAN master, which transmits the PDO.
+ * Remedy: Remove interference from the surroundings, for example poor EMC.
+ * Remedy: Choose another monitoring time or switch the time monitoring off.
  * Preset response: No response. Selectable: None, Fault, Trouble, Quick stop by trouble, Warning locked, Warning,
  * Information. Adjustable in C14591/4.
  * EDS94AYCCA-EN-5.0, 12.2 p. 99.
@@ -6013,6 +6186,12 @@ typedef enum e94aycca_i1029_sub1_opt {
 /**
  * @name 0x00B00004 CAN module (MXI2) RPDO5: telegram n. received or faulty
  * Error of CAN-IN5 in this slot.
+ * Cause: The received PDO has the wrong length.
+ * Cause: An error occurred during the transmission.
+ * Cause: The time monitoring of the PDO has responded.
+ * Remedy: Set the right telegram length in the CAN master, which transmits the PDO.
+ * Remedy: Remove interference from the surroundings, for example poor EMC.
+ * Remedy: Choose another monitoring time or switch the time monitoring off.
  * Preset response: No response. Selectable: None, Fault, Trouble, Quick stop by trouble, Warning locked, Warning,
  * Information.
  * EDS94AYCCA-EN-5.0, 12.2 p. 99.
@@ -6029,6 +6208,12 @@ typedef enum e94aycca_i1029_sub1_opt {
 /**
  * @name 0x00B00005 CAN module (MXI2) RPDO6: telegram n. received or faulty
  * Error of CAN-IN6 in this slot.
+ * Cause: The received PDO has the wrong length.
+ * Cause: An error occurred during the transmission.
+ * Cause: The time monitoring of the PDO has responded.
+ * Remedy: Set the right telegram length in the CAN master, which transmits the PDO.
+ * Remedy: Remove interference from the surroundings, for example poor EMC.
+ * Remedy: Choose another monitoring time or switch the time monitoring off.
  * Preset response: No response. Selectable: None, Fault, Trouble, Quick stop by trouble, Warning locked, Warning,
  * Information.
  * EDS94AYCCA-EN-5.0, 12.2 p. 99.
@@ -6045,6 +6230,12 @@ typedef enum e94aycca_i1029_sub1_opt {
 /**
  * @name 0x00B00006 CAN module (MXI2) RPDO7: telegram n. received or faulty
  * Error of CAN-IN7 in this slot.
+ * Cause: The received PDO has the wrong length.
+ * Cause: An error occurred during the transmission.
+ * Cause: The time monitoring of the PDO has responded.
+ * Remedy: Set the right telegram length in the CAN master, which transmits the PDO.
+ * Remedy: Remove interference from the surroundings, for example poor EMC.
+ * Remedy: Choose another monitoring time or switch the time monitoring off.
  * Preset response: No response. Selectable: None, Fault, Trouble, Quick stop by trouble, Warning locked, Warning,
  * Information.
  * EDS94AYCCA-EN-5.0, 12.2 p. 99.
@@ -6061,6 +6252,12 @@ typedef enum e94aycca_i1029_sub1_opt {
 /**
  * @name 0x00B00007 CAN module (MXI2) RPDO8: telegram n. received or faulty
  * Error of CAN-IN8 in this slot.
+ * Cause: The received PDO has the wrong length.
+ * Cause: An error occurred during the transmission.
+ * Cause: The time monitoring of the PDO has responded.
+ * Remedy: Set the right telegram length in the CAN master, which transmits the PDO.
+ * Remedy: Remove interference from the surroundings, for example poor EMC.
+ * Remedy: Choose another monitoring time or switch the time monitoring off.
  * Preset response: No response. Selectable: None, Fault, Trouble, Quick stop by trouble, Warning locked, Warning,
  * Information.
  * EDS94AYCCA-EN-5.0, 12.2 p. 100.
@@ -6077,6 +6274,11 @@ typedef enum e94aycca_i1029_sub1_opt {
 /**
  * @name 0x00B00008 CAN module (MXI2) PDO manager: configuration incomplete
  * Error in the PDO configuration of the module in this slot.
+ * Cause: The download of the project was faulty.
+ * Cause: The "Engineer" or "PLC Designer" project holds CAN settings that DS301 V4.02 does not allow.
+ * Cause: Mapping variables carry CANopen indices that do not agree with DS405.
+ * Remedy: Download the project again.
+ * Remedy: Correct the CAN settings of the project, then generate the project anew.
  * Preset response: Warning locked. Selectable: Warning locked.
  * EDS94AYCCA-EN-5.0, 12.2 p. 100.
  * Erratum error-configuration-faulty: printed (detail): ... faulty; used: ... incomplete.
@@ -6088,6 +6290,10 @@ typedef enum e94aycca_i1029_sub1_opt {
 /**
  * @name 0x00B10000 CAN module (MXI2) SDO server: configuration incomplete
  * Configuration error of the SDO server in this slot.
+ * Cause: The download of the project was faulty.
+ * Cause: The "Engineer" or "PLC Designer" project holds SDO server settings that DS301 V4.02 does not allow.
+ * Remedy: Download the project again.
+ * Remedy: Correct the CAN settings of the project, then generate the project anew.
  * Preset response: Warning locked. Selectable: Warning locked.
  * EDS94AYCCA-EN-5.0, 12.2 p. 100.
  * Erratum error-configuration-faulty: printed (detail): ... faulty; used: ... incomplete.
@@ -6099,6 +6305,10 @@ typedef enum e94aycca_i1029_sub1_opt {
 /**
  * @name 0x00B20000 CAN module (MXI2) SDO client: configuration incomplete
  * Configuration error of the SDO client in this slot.
+ * Cause: The download of the project was faulty.
+ * Cause: The "Engineer" or "PLC Designer" project holds SDO client settings that DS301 V4.02 does not allow.
+ * Remedy: Download the project again.
+ * Remedy: Correct the CAN settings of the project, then generate the project anew.
  * Preset response: Warning locked. Selectable: Warning locked.
  * EDS94AYCCA-EN-5.0, 12.2 p. 100.
  * Erratum error-configuration-faulty: printed (detail): ... faulty; used: ... incomplete.
@@ -6121,6 +6331,8 @@ typedef enum e94aycca_i1029_sub1_opt {
  * @name 0x1000 Generic error
  * An error of the standard device. The last four bytes of the telegram hold its Lenze error number as C00168 shows it;
  * C00166 describes the cause.
+ * Cause: The standard device has an error whose response is Fault, Trouble, Quick stop by trouble, Warning locked,
+ * Warning or System fault.
  * Error register: 0x01.
  * EDS94AYCCA-EN-5.0, 10.3 p. 84.
  * Erratum emergency-0x1000-responses: printed: Fault, Trouble, Quick stop by trouble, Warning, Warning locked, System
@@ -6165,6 +6377,7 @@ typedef enum e94aycca_i1029_sub1_opt {
 
 /**
  * @name 0x8150 Collision of identifiers (COB-IDs)
+ * Cause: One identifier is set both for receiving and for sending.
  * Error register: 0x11.
  * EDS94AYCCA-EN-5.0, 10.3 p. 84.
  * @{
