@@ -442,9 +442,9 @@ def agree(printed: Pattern, seen: Pattern) -> bool:
     """Whether two patterns may be one: nothing that both tell is different."""
     if Light.ANY in (printed.light, seen.light):
         return True
-    lights = [Light.ON, Light.FLICKER] if printed.light is Light.ON_OR_FLICKER else []
+    meant = [{Light.ON, Light.FLICKER} if it.light is Light.ON_OR_FLICKER else {it.light} for it in (printed, seen)]
     told = [(getattr(printed, key), getattr(seen, key)) for key in ("colour", "period", "flashes", "pause")]
-    return seen.light in (printed.light, *lights) and all(not a or not b or a == b for a, b in told)
+    return bool(meant[0] & meant[1]) and all(not a or not b or a == b for a, b in told)
 
 
 def fitting_rows(table: IndicatorTable, seen: tuple[Pattern, ...]) -> list[int]:

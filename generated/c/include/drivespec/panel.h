@@ -78,11 +78,13 @@ static inline bool drivespec_number_fits(uint16_t a, uint16_t b)
     return (a == 0u) || (b == 0u) || (a == b);
 }
 
-/** Whether a light that is seen is the printed one, or one of those that the manual does not tell apart. */
-static inline bool drivespec_light_fits(uint8_t printed, uint8_t seen)
+/** Whether a light may be another: they are the same, or one leaves open which of the two it is. */
+static inline bool drivespec_light_fits(uint8_t a, uint8_t b)
 {
-    return (printed == seen) || ((printed == DRIVESPEC_LIGHT_ON_OR_FLICKER) &&
-                                 ((seen == DRIVESPEC_LIGHT_ON) || (seen == DRIVESPEC_LIGHT_FLICKER)));
+    const uint8_t other = (a == DRIVESPEC_LIGHT_ON_OR_FLICKER) ? b : a;
+
+    return (a == b) || (((a == DRIVESPEC_LIGHT_ON_OR_FLICKER) || (b == DRIVESPEC_LIGHT_ON_OR_FLICKER)) &&
+                        ((other == DRIVESPEC_LIGHT_ON) || (other == DRIVESPEC_LIGHT_FLICKER)));
 }
 
 /** Whether a pattern that is seen agrees with a printed one in all that is known of both. */
