@@ -393,13 +393,22 @@ def default_record(key: str, value: object, follows: NodeRelative | None) -> tup
     return record, 2 * isinstance(value, (int, str)) + 4 * (base is not None)
 
 
+def highest_node(model: Model) -> int:
+    """Last node address before a COB-ID of one function is one of another."""
+    bases = {entry.base for entry in model.cob_ids}
+    return next(node for node in range(1, 2**11) if any(base + node in bases for base in bases)) - 1
+
+
 def expected_common(model: Model) -> Values:
     found: Values = {f"DRIVESPEC_TYPE_{data_type.canopen_name}": data_type.canopen_number for data_type in DataType}
     found |= {f"DRIVESPEC_ACCESS_{screaming(flag)}": 2**bit for bit, flag in enumerate(ACCESS_FLAGS)}
     found |= {f"DRIVESPEC_ERROR_{screaming(kind)}": value for value, kind in enumerate(ERROR_KINDS)}
     found |= {"DRIVESPEC_HAS_RANGE": 1, "DRIVESPEC_HAS_DEFAULT": 2, "DRIVESPEC_HAS_DEFAULT_BASE": 4}
     found |= {"DRIVESPEC_RESPONSE_NOT_PRINTED": 255}
-    found |= {f"DRIVESPEC_COB_ID_{screaming(entry.name)}": entry.base for entry in model.cob_ids}
+    for entry in model.cob_ids:
+        found[f"DRIVESPEC_COB_ID_{screaming(entry.name)}{'' if entry.broadcast else '_BASE'}"] = entry.base
+    if model.cob_ids:
+        found["DRIVESPEC_NODE_MAX"] = highest_node(model)
     for drive in model.drives:
         name = screaming(drive.id)
         found[f"{name}_INDEX_BASE"] = drive.index_base
@@ -553,6 +562,22 @@ def test_comments_say_where_facts_come_from(model: Model, c: Path) -> None:
             for name in errata:
                 assert f"Erratum {name}: printed" in comment, title
                 assert "used: " in comment.partition(f"Erratum {name}: ")[2], title
+
+
+def test_comments_say_what_no_record_holds(model: Model, c: Path) -> None:
+    """Causes, remedies and the codes that set a response, which the README sends the reader to the comments for."""
+    seen = set()
+    for device in model.devices:
+        text = (c / f"include/drivespec/{device.id}.h").read_text(encoding="ascii")
+        for error in device.errors:
+            comment = block(text, f"0x{error.number:0{error_digits(error, device)}X} {error.name}")
+            facts = [("Cause: ", error.causes), ("Remedy: ", error.remedies)]
+            facts += [("Adjustable in ", tuple(str(ref) for ref in error.adjustable_in[:1]))]
+            for label, texts in facts:
+                plain = [f"{label}{said}".translate(dict.fromkeys(map(ord, "»«"), '"')) for said in texts]
+                assert [said for said in plain if said not in comment] == [], error.name
+                seen |= {label for _ in texts}
+    assert len(seen) == 3
 
 
 def test_the_head_names_source_and_version(model: Model, c: Path) -> None:

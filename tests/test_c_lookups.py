@@ -1,18 +1,20 @@
 """Arithmetic and lookups of the C headers: run over whole domains and compared with the model."""
 
 import random
+import re
+from collections.abc import Iterator
 from dataclasses import replace
 from fractions import Fraction
 from math import floor
 from pathlib import Path
 
 import pytest
-from test_c import COMPILERS, Values, assert_same, compile_c, run, write
+from test_c import COMPILERS, Values, assert_same, compile_c, highest_node, run, write
 
 from generator.emit.c.common import ERROR_KINDS
 from generator.emit.c.panel import LIGHTS
 from generator.emit.hashing import perfect_hash
-from generator.model import Code, Device, Light, Model, Pattern, SwitchGroup
+from generator.model import Code, Device, IndicatorTable, Light, Model, Pattern, SwitchGroup
 from generator.naming import screaming, snake
 
 
@@ -147,7 +149,56 @@ def test_reported_errors_whatever_their_response_and_instance(model: Model, c: P
     assert tried
 
 
+# COB-IDs.
+
+
+def test_cob_ids_of_each_node_and_of_no_other(model: Model, c: Path, tmp_path: Path) -> None:
+    body, expected = "    uint32_t value = 0u;\n", {}
+    for entry in model.cob_ids:
+        if entry.broadcast:
+            continue
+        macro = f"DRIVESPEC_COB_ID_{screaming(entry.name)}_BASE"
+        body += (
+            "    for (uint32_t node = 0u; node <= 600u; node++) {\n"
+            "        value = 9u;\n"
+            f"        const int done = (int)drivespec_at_node({macro}, node, &value);\n"
+            f'        printf("{entry.name} %lu=%d %lu\\n", (unsigned long)node, done, (unsigned long)value);\n'
+            "    }\n"
+        )
+        for node in range(601):
+            legal = 1 <= node <= highest_node(model)
+            expected[f"{entry.name} {node}"] = f"1 {entry.base + node}" if legal else "0 9"
+    assert expected
+    assert_same(result(tmp_path, c, ["drivespec.h"], body), dict(expected))
+
+
+def test_comments_tell_broadcasts_from_bases(model: Model, c: Path) -> None:
+    text = (c / "include/drivespec/drivespec.h").read_text(encoding="ascii")
+    for entry in model.cob_ids:
+        comment = re.search(rf"DRIVESPEC_COB_ID_{screaming(entry.name)}(_BASE)? .*///< (.*)", text)
+        assert comment
+        assert ("broadcast: the whole COB-ID" in comment[2]) == entry.broadcast
+        assert ("less the node address" in comment[2]) != entry.broadcast
+
+
 # Codes.
+
+
+def test_numbers_and_indexes_that_are_none(model: Model, c: Path, tmp_path: Path) -> None:
+    """They give 0, which no code has for a number or an index; nothing wraps around."""
+    assert all(code.number and code.index for device in model.devices for code in device.codes)
+    body = ""
+    expected: dict[str, int | str] = {}
+    for drive in model.drives:
+        for function in (f"{snake(drive.id)}_index", f"{snake(drive.id)}_code"):
+            body += (
+                "    for (uint32_t n = 0u; n <= 0xFFFFu; n++) {\n"
+                f'        printf("{function} %lu=%u\\n", (unsigned long)n, (unsigned){function}((uint16_t)n));\n'
+                "    }\n"
+            )
+            expected |= {f"{function} {n}": max(drive.index_base - n, 0) for n in range(2**16)}
+    assert expected
+    assert_same(result(tmp_path, c, ["drivespec.h"], body), dict(expected))
 
 
 def test_index_and_slot_of_each_code(model: Model, c: Path, tmp_path: Path) -> None:
@@ -204,38 +255,102 @@ def test_codes_by_name_through_all_slots(model: Model, c: Path, tmp_path: Path) 
 
 
 def bounds(code: Code) -> tuple[Fraction, Fraction] | None:
-    """Range of a code in wire values."""
+    """Range of a code in its unit."""
+    held = holds(code)
     if code.range is not None:
-        return code.range.low * (code.scaling or 1), code.range.high * (code.scaling or 1)
-    if not code.data_type.is_number:
-        return None
-    return Fraction(code.data_type.lowest), Fraction(min(code.data_type.highest, 2**63 - 1))
+        return code.range.low, code.range.high
+    return held and (Fraction(held[0], code.scaling or 1), Fraction(held[1], code.scaling or 1))
 
 
-def test_values_to_wire_values_and_back(model: Model, c: Path, tmp_path: Path) -> None:
+def holds(code: Code) -> tuple[int, int] | None:
+    """Least and largest wire value of the data type, as far as 64 bits with sign hold it."""
+    kind = code.data_type
+    return (kind.lowest, min(kind.highest, 2**63 - 1)) if kind.is_number else None
+
+
+def nearest(value: Fraction) -> int:
+    """Nearest whole number, halves away from 0."""
+    return int(abs(value) + Fraction(1, 2)) * (-1 if value < 0 else 1)
+
+
+def test_values_to_wire_values(model: Model, c: Path, tmp_path: Path) -> None:
+    """The range is that of the value, not of the wire value that it would be rounded to."""
+    rounded_into_range = 0
     for device in model.devices:
-        if not device.codes:
-            continue
-        body, expected = "    int64_t wire = 0;\n    double value = 0.0;\n", {}
+        body, expected = "    int64_t wire = 0;\n", {}
         for code in device.codes:
-            limits = bounds(code)
-            factor = code.scaling or 1
-            ends = [0, 1] if limits is None else [floor(limits[0]), floor(limits[1]), floor(sum(limits) / 2)]
+            limits, factor = bounds(code), code.scaling or 1
+            ends = [0, 1] if limits is None else [floor(end * factor) for end in (*limits, sum(limits) / 2)]
+            steps = (-1, -0.6, -0.4, 0, 0.4, 0.5 if factor == 1 else 0.6, 1)
+            for value in sorted({(end + step) / factor for end in ends for step in steps if abs(end) < 2**40}):
+                inside = limits is not None and float(limits[0]) <= value <= float(limits[1])
+                wire = nearest(Fraction(value) * factor)
+                if limits is not None and not inside:
+                    rounded_into_range += limits[0] <= Fraction(wire, factor) <= limits[1]
+                key = f"{code.number} {value!r}"
+                body += f'    wire = 99;\n    printf("{key}=%d ", '
+                body += f"(int)drivespec_to_wire({device.id}_find_code({code.number}u), {value!r}, &wire));\n"
+                body += '    printf("%lld\\n", (long long)wire);\n'
+                expected[key] = f"{int(inside)} {wire if inside else 99}"
+        if device.codes:
+            assert_same(result(tmp_path, c, [f"{device.id}_tables.h"], body), dict(expected))
+    assert rounded_into_range
+
+
+def test_wire_values_to_values(model: Model, c: Path, tmp_path: Path) -> None:
+    """A drive may hold a value outside of the range of its setting; only what the data type cannot hold is refused."""
+    outside = 0
+    for device in model.devices:
+        body, expected = "    double value = 0.0;\n", {}
+        for code in device.codes:
+            limits, held, factor = bounds(code), holds(code), code.scaling or 1
+            ends = [*(floor(end * factor) for end in limits or ()), *(held or ()), 0]
             for wire in sorted({end + step for end in ends for step in (-1, 0, 1)}):
                 if abs(wire) > 2**40:
                     continue
-                inside = limits is not None and limits[0] <= wire <= limits[1]
+                fits = held is not None and held[0] <= wire <= held[1]
+                outside += fits and limits is not None and not limits[0] <= Fraction(wire, factor) <= limits[1]
                 key = f"{code.number} {wire}"
-                record = f"{device.id}_find_code({code.number}u)"
-                towards_zero = "" if wire == 0 else " - 0.4" if wire > 0 else " + 0.4"
-                body += f"    value = ({wire}.0{towards_zero}) / {factor}.0;\n    wire = 99;\n"
-                body += f'    printf("to {key}=%d ", (int)drivespec_to_wire({record}, value, &wire));\n'
-                body += '    printf("%lld\\n", (long long)wire);\n    value = 0.5;\n'
-                body += f'    printf("from {key}=%d ", (int)drivespec_from_wire({record}, INT64_C({wire}), &value));\n'
-                body += f'    printf("%d\\n", (int)(value == {wire}.0 / {factor}.0));\n'
-                expected[f"to {key}"] = f"{int(inside)} {wire if inside else 99}"
-                expected[f"from {key}"] = f"{int(inside)} {int(inside or Fraction(wire, factor) == Fraction(1, 2))}"
-        assert_same(result(tmp_path, c, [f"{device.id}_tables.h"], body), dict(expected))
+                body += "    value = 0.3125;\n"
+                body += f'    printf("{key}=%d ", (int)drivespec_from_wire({device.id}_find_code({code.number}u), '
+                body += f'INT64_C({wire}), &value));\n    printf("%.17g\\n", value);\n'
+                expected[key] = f"{int(fits)} {wire / factor if fits else 0.3125:.17g}"
+        if device.codes:
+            assert_same(result(tmp_path, c, [f"{device.id}_tables.h"], body), dict(expected))
+    assert outside
+
+
+def test_values_beside_their_limits_and_between_wire_values(model: Model, c: Path, tmp_path: Path) -> None:
+    device = next(d for d in model.devices if d.codes)
+    cases = [
+        # Least and largest wire value, scaling, value, wire value: 0.29 * 100 is less than 29 in double.
+        (29, 57, 100, "0.29", 29),
+        (29, 57, 100, "0.57", 57),
+        (29, 57, 100, "0.2899999", None),
+        (29, 57, 100, "0.5700001", None),
+        (250, 1000, 0, "249.6", None),
+        (250, 1000, 0, "250.4", 250),
+        (250, 1000, 0, "1000.4", None),
+        # Where adding a half is not exact.
+        (-(2**60), 2**60, 1, "0.49999999999999994", 0),
+        (-(2**60), 2**60, 1, "4503599627370497.0", 2**52 + 1),
+        (-(2**60), 2**60, 1, "-4503599627370497.0", -(2**52) - 1),
+        (-(2**60), 2**60, 1, "-0.5", -1),
+    ]
+    body = (
+        f"    drivespec_code code = {device.id}_codes[0];\n    int64_t wire = 0;\n    code.has = DRIVESPEC_HAS_RANGE;\n"
+    )
+    expected: Values = {}
+    for low, high, scaling, value, wire in cases:
+        body += f"    code.min = INT64_C({low});\n    code.max = INT64_C({high});\n    code.scaling = {scaling}u;\n"
+        body += f'    wire = 9;\n    printf("{low} {value}=%d ", (int)drivespec_to_wire(&code, {value}, &wire));\n'
+        body += '    printf("%lld\\n", (long long)wire);\n'
+        expected[f"{low} {value}"] = "0 9" if wire is None else f"1 {wire}"
+    for wire in (249, 250, 1000, 1001):
+        body += "    code.min = 250;\n    code.max = 1000;\n"
+        body += f'    printf("{wire}=%d\\n", (int)drivespec_in_range(&code, {wire}));\n'
+        expected[str(wire)] = int(250 <= wire <= 1000)
+    assert_same(result(tmp_path, c, [f"{device.id}_tables.h"], body), expected)
 
 
 def test_values_that_no_wire_value_is_near_to(model: Model, c: Path, tmp_path: Path) -> None:
@@ -246,14 +361,12 @@ def test_values_that_no_wire_value_is_near_to(model: Model, c: Path, tmp_path: P
     for name, text in (("nan", "zero / zero"), ("inf", "1.0e300 * 1.0e300"), ("minus", "-1.0e300")):
         body += f'    printf("{name}=%d\\n", (int)drivespec_to_wire({record}, {text}, &wire));\n'
     body += '    printf("wire=%lld\\n", (long long)wire);\n'
-    body += '    printf("node=%lu\\n", (unsigned long)drivespec_at_node(UINT32_C(0x180), 127u));\n'
     body = body.replace("1.0e300 * 1.0e300", "1.0e300")
     assert result(tmp_path, c, [f"{device.id}_tables.h"], body) == {
         "nan": 0,
         "inf": 0,
         "minus": 0,
         "wire": 7,
-        "node": 0x180 + 127,
     }
 
 
@@ -325,22 +438,63 @@ def literal(pattern: Pattern) -> str:
     )
 
 
+def agree(printed: Pattern, seen: Pattern) -> bool:
+    """Whether two patterns may be one: nothing that both tell is different."""
+    if Light.ANY in (printed.light, seen.light):
+        return True
+    meant = [{Light.ON, Light.FLICKER} if it.light is Light.ON_OR_FLICKER else {it.light} for it in (printed, seen)]
+    told = [(getattr(printed, key), getattr(seen, key)) for key in ("colour", "period", "flashes", "pause")]
+    return bool(meant[0] & meant[1]) and all(not a or not b or a == b for a, b in told)
+
+
+def fitting_rows(table: IndicatorTable, seen: tuple[Pattern, ...]) -> list[int]:
+    """Places of the rows that fit."""
+    pairs = [zip(row.patterns, seen, strict=True) for row in table.rows]
+    return [place for place, row in enumerate(pairs) if all(agree(*pair) for pair in row)]
+
+
+def sights(table: IndicatorTable) -> Iterator[tuple[Pattern, ...]]:
+    """What may be seen of LEDs: what is printed, less of it, and what is printed nowhere."""
+    for row in table.rows:
+        yield row.patterns
+        yield tuple(replace(pattern, period=None) for pattern in row.patterns)
+        yield tuple(replace(pattern, flashes=None, pause=None) for pattern in row.patterns)
+        for colour in dict.fromkeys([None, *(pattern.colour for one in table.rows for pattern in one.patterns)]):
+            yield tuple(replace(pattern, colour=colour) for pattern in row.patterns)
+        yield tuple(replace(pattern, period=Fraction(7), flashes=7, pause=Fraction(7)) for pattern in row.patterns)
+        for place in range(len(table.leds)):
+            yield (*row.patterns[:place], Pattern(Light.ANY), *row.patterns[place + 1 :])
+    for light in Light:
+        yield (Pattern(light),) * len(table.leds)
+
+
 def led_program(device: Device) -> tuple[str, Values]:
     body = ""
     expected: Values = {}
     for table in device.indicators:
         name = snake(device.id, "led", table.id)
-        for place, row in enumerate(table.rows):
-            patterns = ", ".join(literal(pattern) for pattern in row.patterns)
-            body += f"    {{\n        const drivespec_pattern seen[] = {{ {patterns} }};\n"
-            body += f"        const {name}_row *const row = {name}_find(seen);\n"
-            body += f'        printf("{name} {place}=%s\\n", row != NULL ? row->state : "-");\n    }}\n'
-            expected[f"{name} {place}"] = row.state
-        absent = ", ".join(literal(Pattern(Light.ANY)) for _ in table.leds)
-        body += f"    {{\n        const drivespec_pattern seen[] = {{ {absent} }};\n"
-        body += f'        printf("{name} unknown=%d\\n", (int)({name}_find(seen) == NULL));\n    }}\n'
-        dull = any(all(pattern.light is Light.ANY for pattern in row.patterns) for row in table.rows)
-        expected[f"{name} unknown"] = int(not dull)
+        body += f'    printf("{name} leds=%u\\n", (unsigned){name.upper()}_COUNT);\n'
+        expected[f"{name} leds"] = len(table.leds)
+        for place, seen in enumerate(dict.fromkeys(sights(table))):
+            fitting = [
+                at
+                for at, row in enumerate(table.rows)
+                if all(agree(*pair) for pair in zip(row.patterns, seen, strict=True))
+            ]
+            body += (
+                "    {\n"
+                f"        const drivespec_pattern seen[] = {{ {', '.join(map(literal, seen))} }};\n"
+                f"        const {name}_row *row = {name}_find(seen);\n"
+                f'        printf("{name} {place}=%d:", row != NULL ? (int)(row - {name}_rows) : -1);\n'
+                "        row = NULL;\n"
+                f"        while ((row = {name}_next(seen, row)) != NULL) {{\n"
+                f'            printf(" %d", (int)(row - {name}_rows));\n'
+                "        }\n"
+                '        printf("\\n");\n'
+                "    }\n"
+            )
+            alone = fitting[0] if len(fitting) == 1 else -1
+            expected[f"{name} {place}"] = "".join([f"{alone}:", *(f" {at}" for at in fitting)])
     return body, expected
 
 
@@ -355,21 +509,32 @@ def test_switches_and_leds(model: Model, c: Path, tmp_path: Path, compiler: str,
         assert_same(printed, settings | states)
 
 
-def test_times_of_leds_that_were_not_measured(model: Model, c: Path, tmp_path: Path) -> None:
-    """A pattern without its times finds a row that has them, and no row of another light."""
-    body, expected = "", {}
+def test_led_patterns_that_fit_no_row_one_and_several(model: Model) -> None:
+    """The tables of the manuals have all three, so that the test above tells them apart."""
+    found = {str(value) for device in model.devices for value in led_program(device)[1].values()}
+    assert "-1:" in found
+    assert any(value.startswith("-1: ") for value in found)
+    assert any(value.startswith("0: 0") for value in found)
+
+
+def test_leds_of_several_colours(model: Model, tmp_path: Path) -> None:
+    device, table = next((d, t) for d in model.devices for t in d.indicators if len(t.rows) > 1)
+    rows = [
+        replace(row, patterns=tuple(replace(pattern, colour=colour) for pattern in row.patterns))
+        for row in table.rows
+        for colour in ("red", "green", None)
+    ]
+    coloured = replace(device, indicators=(replace(table, rows=tuple(rows)),))
+    body, expected = led_program(coloured)
+    c = write(tmp_path / "c", replace(model, devices=(coloured,)))
+    assert_same(result(tmp_path, c, [f"{device.id}_panel.h"], body), expected)
+
+
+def test_leds_are_asked_for_all_at_once(model: Model, c: Path) -> None:
+    """The prototype holds how many patterns are read."""
     for device in model.devices:
         for table in device.indicators:
             name = snake(device.id, "led", table.id)
-            for place, row in enumerate(table.rows):
-                if all(pattern.period is None and pattern.pause is None for pattern in row.patterns):
-                    continue
-                bare = ", ".join(literal(Pattern(p.light, p.colour, None, p.flashes)) for p in row.patterns)
-                key = f"{device.id} {table.id} {place}"
-                body += f"    {{\n        const drivespec_pattern seen[] = {{ {bare} }};\n"
-                body += f'        printf("{key}=%s\\n", {name}_find(seen)->state);\n    }}\n'
-                shapes = [tuple((p.light, p.flashes) for p in other.patterns) for other in table.rows]
-                expected[key] = table.rows[shapes.index(shapes[place])].state
-    assert expected
-    headers = [f"{device.id}_panel.h" for device in model.devices if device.indicators]
-    assert_same(result(tmp_path, c, headers, body), dict(expected))
+            text = (c / f"include/drivespec/{device.id}_panel.h").read_text(encoding="ascii")
+            for function in ("next", "find"):
+                assert f"{name}_{function}(const drivespec_pattern seen[{name.upper()}_COUNT]" in text

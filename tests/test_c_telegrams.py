@@ -424,3 +424,34 @@ def test_all_headers_on_a_32_bit_machine_without_a_library(model: Model, c: Path
         )
     )
     compile_c(tmp_path, source, "cc", "c99", f"-I{c / 'include'}", "-m32", "-ffreestanding", "-c")
+
+
+def tried_first(layout: Layout, device: Device) -> set[str]:
+    """Layouts whose every telegram this one takes, though with a value that it does not list."""
+    found = set()
+    for other in device.layouts:
+        messages = [message(other, random.Random(seed)) for seed in range(50)]
+        try:
+            decoded = [decode(layout, data) for data in messages]
+        except CodecError:
+            continue
+        for field in layout.fields:
+            values = {values[field.name] for values in decoded if not isinstance(values[field.name], tuple)}
+            known = {option.value for option in field.values}
+            if other.protocol == layout.protocol and known and len(values) == 1 and not values & known:
+                found.add(snake(device.id, other.id))
+    return found
+
+
+def test_comments_say_which_telegram_to_try_first(model: Model, c: Path) -> None:
+    total = 0
+    for device in model.devices:
+        if not device.layouts:
+            continue
+        text = (c / f"include/drivespec/{device.id}_telegrams.h").read_text(encoding="ascii")
+        for layout in device.layouts:
+            head = text.partition(f"typedef struct {snake(device.id, layout.id)}_t {{")[0].rpartition("/**")[2]
+            expected = tried_first(layout, device)
+            assert set(re.findall(r"Try (\w+)_decode first", head)) == expected
+            total += len(expected)
+    assert total

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 
 from generator.emit.c.prose import cited, provenance
 from generator.emit.c.syntax import comment, integer
@@ -28,7 +29,9 @@ _FUNCTIONS = (
     "field_set",
     "at_node",
     "type_limits",
+    "limits",
     "in_range",
+    "factor",
     "to_wire",
     "from_wire",
     "same_text",
@@ -72,6 +75,7 @@ class CommonHeader(Header):
 
     drives: tuple[DriveView, ...]
     types: tuple[TypeView, ...]
+    has_nodes: bool
 
 
 def common_header(model: Model, names: Names) -> CommonHeader:
@@ -88,7 +92,7 @@ def common_header(model: Model, names: Names) -> CommonHeader:
     drives = tuple(_drive_view(drive, names) for drive in model.drives)
     types = tuple(_type_view(data_type) for data_type in DataType if data_type.is_number)
     brief = "Types and facts that several drives share."
-    return CommonHeader("drivespec.h", guard, brief, notes, tuple(sections), drives, types)
+    return CommonHeader("drivespec.h", guard, brief, notes, tuple(sections), drives, types, bool(model.cob_ids))
 
 
 def _drive_view(drive: Drive, names: Names) -> DriveView:
@@ -181,9 +185,21 @@ def _values(
 
 
 def _connection_set(model: Model, names: Names) -> Section:
-    writer = Writer(names, "DRIVESPEC_COB_ID", "COB-ID less the node address", _HERE)
+    writer = Writer(names, "DRIVESPEC", "COB-ID", _HERE)
     for entry in model.cob_ids:
+        name = f"COB_ID_{screaming(entry.name)}"
         objects = f" ({', '.join(map(str, entry.objects))})" if entry.objects else ""
-        writer.number(screaming(entry.name), entry.base, f"{entry.name}{objects}", 16, hexadecimal=True)
+        if entry.broadcast:
+            writer.number(name, entry.base, f"{entry.name}{objects}, broadcast: the whole COB-ID", hexadecimal=True)
+        else:
+            text = f"{entry.name}{objects}, COB-ID less the node address"
+            writer.number(f"{name}_BASE", entry.base, text, hexadecimal=True)
+    writer.number("NODE_MAX", _highest_node(model), "highest node address: COB-IDs stay below the next base", 8)
     cites = dict.fromkeys(cited(entry.cite) for entry in model.cob_ids)
-    return writer.section("Predefined connection set", cites)
+    return writer.section("Predefined connection set", ["A base takes the node address: drivespec_at_node.", *cites])
+
+
+def _highest_node(model: Model) -> int:
+    """Highest node address for which no COB-ID runs into the next."""
+    bases = sorted({entry.base for entry in model.cob_ids})
+    return min(after - before for before, after in pairwise(bases)) - 1

@@ -281,6 +281,8 @@ def _error(error: ErrorEntry, device: Device, bits: int, names: Names) -> Sectio
         f"0x{error.number:0{bits // 4}X} {error.name}",
         [
             error.description,
+            *(f"Cause: {text}" for text in error.causes),
+            *(f"Remedy: {text}" for text in error.remedies),
             " ".join(filter(None, _error_facts(error))),
             cited(error.cite, error.origin),
             *errata(device, error.errata, {"number": error.number}),

@@ -1,13 +1,13 @@
 """<device>_panel.h: DIP switches and LEDs; panel.h: what the panels of all devices share."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 
 from generator.emit.c.device import device_prefix
 from generator.emit.c.prose import cited, errata, provenance, references
 from generator.emit.c.syntax import comment, integer, paragraph, string, text_size
-from generator.emit.c.writer import Constant, Names, Section, Writer
+from generator.emit.c.writer import Names, Section, Writer
 from generator.emit.switches import remarks
 from generator.model import Device, IndicatorTable, Light, Manual, Model, Pattern, SwitchGroup, SwitchRow, Where
 from generator.naming import snake
@@ -18,7 +18,16 @@ LIGHTS = (Light.ANY, Light.OFF, Light.ON, Light.FLICKER, Light.BLINK, Light.FLAS
 _EITHER = "x"
 _MILLI = 1000
 _HERE = Where("panel.h", 1, 1)
-_FUNCTIONS = ("switch_row", "switch_row_at", "switch_sum", "pattern", "pattern_fits")
+_FUNCTIONS = (
+    "switch_row",
+    "switch_row_at",
+    "switch_sum",
+    "pattern",
+    "number_fits",
+    "light_fits",
+    "pattern_fits",
+    "patterns_fit",
+)
 """Ends of the names of the types and functions that the template holds."""
 
 
@@ -57,6 +66,7 @@ class Indicators:
     name: str
     title: str
     lines: tuple[str, ...]
+    count: str
     leds: str
     state_size: str
     rows: tuple[str, ...]
@@ -73,12 +83,6 @@ class Panel:
     device: str
     groups: tuple[Group, ...]
     indicators: tuple[Indicators, ...]
-
-    @property
-    def constants(self) -> Iterator[Constant]:
-        """Every constant of the header."""
-        for group in self.groups:
-            yield from group.section.constants
 
 
 def shared_panel(model: Model, names: Names) -> SharedPanel:
@@ -162,7 +166,7 @@ def _row(row: SwitchRow) -> str:
 
 def _indicators(table: IndicatorTable, device: Device, names: Names) -> Indicators:
     name = snake(device.id, "led", table.id)
-    for suffix in ("row", "rows", "find"):
+    for suffix in ("row", "rows", "next", "find"):
         names.claim(f"{name}_{suffix}", table.where)
     leds = "; ".join(
         f"{led.label} ({', '.join(text for text in (led.colour, led.name) if text)})" for led in table.leds
@@ -170,6 +174,7 @@ def _indicators(table: IndicatorTable, device: Device, names: Names) -> Indicato
     return Indicators(
         name=name,
         title=comment(table.name),
+        count=names.claim(f"{name.upper()}_COUNT", table.where),
         lines=_paragraphs([f"LEDs: {leds}.", cited(table.cite), *errata(device, table.errata, {})]),
         leds=integer(len(table.leds), 8),
         state_size=_size([row.state for row in table.rows]),

@@ -251,12 +251,28 @@ def device_telegrams(model: Model, device: Device, names: Names) -> Telegrams:
 
 def _codecs(layout: Layout, device: Device, names: Names) -> list[Codec]:
     """Codecs of the groups of a layout, inner ones first, and last that of the layout."""
-    lines = [layout.description, f"{layout.protocol}. {cited(layout.cite, layout.origin)}"]
+    lines = [layout.description, *_tried_first(layout, device)]
+    lines += [f"{layout.protocol}. {cited(layout.cite, layout.origin)}"]
     lines += errata(device, layout.errata, {})
     build = _Builder(names, layout.where)
     stem = snake(device.id, layout.id)
     build.codec(stem, layout.name, lines, layout.fields, ())
     return build.codecs
+
+
+def _tried_first(layout: Layout, device: Device) -> Iterator[str]:
+    """Layouts to try first: this one decodes their telegrams too, though its list of values lacks their constant."""
+    for other in device.layouts:
+        if other.protocol != layout.protocol or len(other.fields) != len(layout.fields):
+            continue
+        pairs = list(zip(layout.fields, other.fields, strict=True))
+        if any(a.length != b.length or a.constant not in (None, b.constant) for a, b in pairs):
+            continue
+        for field, special in pairs:
+            values = [option.value for option in field.values]
+            if values and special.constant is not None and special.constant not in values:
+                told = f"{special.title} 0x{special.constant:02X}"
+                yield f"Try {snake(device.id, other.id)}_decode first: its telegrams ({told}) decode as these, too."
 
 
 @dataclass(frozen=True, slots=True)

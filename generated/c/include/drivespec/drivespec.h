@@ -179,24 +179,26 @@ typedef enum servo_drives_9400_command {
 
 /**
  * @name Predefined connection set
+ * A base takes the node address: drivespec_at_node.
  * CiA-301-4.02, 9.4.
  * @{
  */
-#define DRIVESPEC_COB_ID_NMT 0x0000u ///< NMT
-#define DRIVESPEC_COB_ID_SYNC 0x0080u ///< SYNC (I-1005)
-#define DRIVESPEC_COB_ID_EMCY 0x0080u ///< EMCY (I-1014)
-#define DRIVESPEC_COB_ID_TIME 0x0100u ///< TIME (I-1012)
-#define DRIVESPEC_COB_ID_TPDO1 0x0180u ///< TPDO1 (I-1800/1)
-#define DRIVESPEC_COB_ID_RPDO1 0x0200u ///< RPDO1 (I-1400/1)
-#define DRIVESPEC_COB_ID_TPDO2 0x0280u ///< TPDO2 (I-1801/1)
-#define DRIVESPEC_COB_ID_RPDO2 0x0300u ///< RPDO2 (I-1401/1)
-#define DRIVESPEC_COB_ID_TPDO3 0x0380u ///< TPDO3 (I-1802/1)
-#define DRIVESPEC_COB_ID_RPDO3 0x0400u ///< RPDO3 (I-1402/1)
-#define DRIVESPEC_COB_ID_TPDO4 0x0480u ///< TPDO4 (I-1803/1)
-#define DRIVESPEC_COB_ID_RPDO4 0x0500u ///< RPDO4 (I-1403/1)
-#define DRIVESPEC_COB_ID_SDO_TX 0x0580u ///< SDO tx (I-1200/2)
-#define DRIVESPEC_COB_ID_SDO_RX 0x0600u ///< SDO rx (I-1200/1)
-#define DRIVESPEC_COB_ID_NMT_ERROR_CONTROL 0x0700u ///< NMT error control
+#define DRIVESPEC_COB_ID_NMT 0x0000u ///< NMT, broadcast: the whole COB-ID
+#define DRIVESPEC_COB_ID_SYNC 0x0080u ///< SYNC (I-1005), broadcast: the whole COB-ID
+#define DRIVESPEC_COB_ID_EMCY_BASE 0x0080u ///< EMCY (I-1014), COB-ID less the node address
+#define DRIVESPEC_COB_ID_TIME 0x0100u ///< TIME (I-1012), broadcast: the whole COB-ID
+#define DRIVESPEC_COB_ID_TPDO1_BASE 0x0180u ///< TPDO1 (I-1800/1), COB-ID less the node address
+#define DRIVESPEC_COB_ID_RPDO1_BASE 0x0200u ///< RPDO1 (I-1400/1), COB-ID less the node address
+#define DRIVESPEC_COB_ID_TPDO2_BASE 0x0280u ///< TPDO2 (I-1801/1), COB-ID less the node address
+#define DRIVESPEC_COB_ID_RPDO2_BASE 0x0300u ///< RPDO2 (I-1401/1), COB-ID less the node address
+#define DRIVESPEC_COB_ID_TPDO3_BASE 0x0380u ///< TPDO3 (I-1802/1), COB-ID less the node address
+#define DRIVESPEC_COB_ID_RPDO3_BASE 0x0400u ///< RPDO3 (I-1402/1), COB-ID less the node address
+#define DRIVESPEC_COB_ID_TPDO4_BASE 0x0480u ///< TPDO4 (I-1803/1), COB-ID less the node address
+#define DRIVESPEC_COB_ID_RPDO4_BASE 0x0500u ///< RPDO4 (I-1403/1), COB-ID less the node address
+#define DRIVESPEC_COB_ID_SDO_TX_BASE 0x0580u ///< SDO tx (I-1200/2), COB-ID less the node address
+#define DRIVESPEC_COB_ID_SDO_RX_BASE 0x0600u ///< SDO rx (I-1200/1), COB-ID less the node address
+#define DRIVESPEC_COB_ID_NMT_ERROR_CONTROL_BASE 0x0700u ///< NMT error control, COB-ID less the node address
+#define DRIVESPEC_NODE_MAX 127u ///< highest node address: COB-IDs stay below the next base
 /** @} */
 
 /** Record of a code. All values are wire values: value * scaling. */
@@ -249,22 +251,29 @@ static inline uint32_t drivespec_field_set(uint32_t value, uint32_t mask, unsign
     return (value & ~mask) | ((field << shift) & mask);
 }
 
-/** Value that follows the node address: identifiers of the predefined connection set and defaults with a base. */
-static inline uint32_t drivespec_at_node(uint32_t base, uint8_t node)
+/**
+ * Value that follows the node address: a DRIVESPEC_COB_ID_..._BASE or a default with a base, never a broadcast.
+ * False, and @p value as it was, where @p node is not 1 ... DRIVESPEC_NODE_MAX.
+ */
+static inline bool drivespec_at_node(uint32_t base, uint32_t node, uint32_t *value)
 {
-    return base + node;
+    if ((node == 0u) || (node > DRIVESPEC_NODE_MAX)) {
+        return false;
+    }
+    *value = base + node;
+    return true;
 }
 
-/** Index of a code. */
+/** Index of a code; 0, which is no index, where the number is too large for one. */
 static inline uint16_t servo_drives_9400_index(uint16_t code)
 {
-    return (uint16_t)(SERVO_DRIVES_9400_INDEX_BASE - code);
+    return (uint16_t)((code < SERVO_DRIVES_9400_INDEX_BASE) ? SERVO_DRIVES_9400_INDEX_BASE - code : 0u);
 }
 
-/** Code at an index. */
+/** Number of the code at an index; 0, which is no code, where the index is none of a code. */
 static inline uint16_t servo_drives_9400_code(uint16_t index)
 {
-    return (uint16_t)(SERVO_DRIVES_9400_INDEX_BASE - index);
+    return (uint16_t)((index < SERVO_DRIVES_9400_INDEX_BASE) ? SERVO_DRIVES_9400_INDEX_BASE - index : 0u);
 }
 
 /** response of an error number. */
@@ -328,41 +337,69 @@ static inline bool drivespec_type_limits(uint16_t type, int64_t *min, int64_t *m
     }
 }
 
+/** Least and largest wire value of a code or, where no range is printed, of its data type; false where it has none. */
+static inline bool drivespec_limits(const drivespec_code *code, int64_t *min, int64_t *max)
+{
+    if ((code->has & DRIVESPEC_HAS_RANGE) == 0u) {
+        return drivespec_type_limits(code->type, min, max);
+    }
+    *min = code->min;
+    *max = code->max;
+    return true;
+}
+
 /** Whether a wire value is inside the range of a code or, where none is printed, of its data type. */
 static inline bool drivespec_in_range(const drivespec_code *code, int64_t wire)
 {
-    int64_t min = code->min;
-    int64_t max = code->max;
+    int64_t min = 0;
+    int64_t max = 0;
 
-    if (((code->has & DRIVESPEC_HAS_RANGE) == 0u) && !drivespec_type_limits(code->type, &min, &max)) {
-        return false;
-    }
-    return (min <= wire) && (wire <= max);
+    return drivespec_limits(code, &min, &max) && (min <= wire) && (wire <= max);
 }
 
-/** Wire value nearest to a value in its unit; false, and @p wire as it was, where it is out of range. */
+/** Scaling of a code, 1 where none is printed. */
+static inline double drivespec_factor(const drivespec_code *code)
+{
+    return (code->scaling > 0u) ? (double)code->scaling : 1.0;
+}
+
+/**
+ * Wire value nearest to a value in its unit, halves away from 0; false, and @p wire as it was, where the value is out of
+ * the range of the code or, where none is printed, of its data type. The range is that of the value before rounding.
+ */
 static inline bool drivespec_to_wire(const drivespec_code *code, double value, int64_t *wire)
 {
-    const double exact = value * ((code->scaling > 0u) ? (double)code->scaling : 1.0);
+    const double factor = drivespec_factor(code);
+    const double exact = value * factor;
+    int64_t min = 0;
+    int64_t max = 0;
 
-    /* Also false for what is no number; the bounds are whole in double. */
-    if ((exact > -9.2e18) && (exact < 9.2e18)) {
-        const int64_t nearest = (int64_t)((exact < 0.0) ? exact - 0.5 : exact + 0.5);
-        if (drivespec_in_range(code, nearest)) {
-            *wire = nearest;
-            return true;
-        }
+    if (!drivespec_limits(code, &min, &max)) {
+        return false;
+    }
+    /* The limits are divided, as a product may lie beside them; all comparisons are false for what is no number. */
+    if ((value >= (double)min / factor) && (value <= (double)max / factor) && (exact > -9.2e18) && (exact < 9.2e18)) {
+        const int64_t whole = (int64_t)exact;
+        const double rest = exact - (double)whole;
+        *wire = whole + (int64_t)(rest >= 0.5) - (int64_t)(rest <= -0.5);
+        return true;
     }
     return false;
 }
 
-/** Value in its unit; false, and @p value as it was, where the wire value is out of range. */
+/**
+ * Value in its unit, in the range of the code or not; false, and @p value as it was, where the code holds no number or its
+ * data type not this one.
+ */
 static inline bool drivespec_from_wire(const drivespec_code *code, int64_t wire, double *value)
 {
-    if (!drivespec_in_range(code, wire)) {
+    int64_t min = 0;
+    int64_t max = 0;
+
+    if (!drivespec_type_limits(code->type, &min, &max) || (wire < min) || (wire > max)) {
         return false;
     }
-    *value = (double)wire / ((code->scaling > 0u) ? (double)code->scaling : 1.0);
+    *value = (double)wire / drivespec_factor(code);
     return true;
 }
 

@@ -5549,6 +5549,8 @@ typedef enum e94aycca_i1029_sub1_opt {
 
 /**
  * @name 0x008C0017 MXI1: CAN module is missing or is incompatible
+ * Cause: The application does not support the CANopen module in slot MXI1.
+ * Remedy: Use a communication module that the application supports.
  * Preset response: Fault. Selectable: Fault. Adjustable in C00615/2.
  * EDS94AYCCA-EN-5.0, 12.2 p. 91.
  * Erratum module-error-not-adjustable: printed: none; used: C00615/....
@@ -5561,6 +5563,8 @@ typedef enum e94aycca_i1029_sub1_opt {
 
 /**
  * @name 0x008C0018 MXI2: CAN module is missing or is incompatible
+ * Cause: The application does not support the CANopen module in slot MXI2.
+ * Remedy: Use a communication module that the application supports.
  * Preset response: Fault. Selectable: Fault. Adjustable in C00615/3.
  * EDS94AYCCA-EN-5.0, 12.2 p. 91.
  * Erratum module-error-not-adjustable: printed: none; used: C00615/....
@@ -5574,6 +5578,12 @@ typedef enum e94aycca_i1029_sub1_opt {
 /**
  * @name 0x009D0000 CAN module (MXI1): bus-off
  * The CANopen module in this slot is in the "bus-off" state.
+ * Cause: The cable is defective, for example by a loose contact.
+ * Cause: The module in this slot received too many faulty telegrams.
+ * Cause: Two CAN nodes share one node address.
+ * Remedy: Remove interference from the surroundings, for example poor EMC.
+ * Remedy: Repair the loose contact and tighten the adapter.
+ * Remedy: Give each node an address of its own.
  * Preset response: Information. Selectable: None, Fault, Trouble, Quick stop by trouble, Warning locked, Warning,
  * Information. Adjustable in C13595.
  * EDS94AYCCA-EN-5.0, 12.2 p. 91.
@@ -5585,6 +5595,8 @@ typedef enum e94aycca_i1029_sub1_opt {
 /**
  * @name 0x009D0001 CAN module (MXI1): invalid node address 0
  * Error of initialisation: node address 1 is used, since 0 is not permitted.
+ * Cause: The DIP switches are to set the node address of the module in this slot, but all of them stand at 0.
+ * Remedy: Set a node address other than 0, then switch the mains off and on.
  * Preset response: Warning. Selectable: Warning.
  * EDS94AYCCA-EN-5.0, 12.2 p. 91.
  * Erratum all-switches-off: printed: C13350 / 14350: Switches 1 ... 64 = OFF (6.2.1, table p. 33), all set to "0";
@@ -5598,6 +5610,10 @@ typedef enum e94aycca_i1029_sub1_opt {
 /**
  * @name 0x009D0002 CAN module (MXI1): basic configuration invalid
  * Configuration error of the CANopen module in this slot.
+ * Cause: The download of the "Engineer" or "PLC Designer" project was faulty.
+ * Cause: The "Engineer" or "PLC Designer" project holds CAN settings that DS301 V4.02 does not allow.
+ * Remedy: Download the project again.
+ * Remedy: Correct the CAN settings of the project, then generate the project anew.
  * Preset response: Warning locked. Selectable: Warning locked.
  * EDS94AYCCA-EN-5.0, 12.2 p. 92.
  * @{
@@ -5609,6 +5625,12 @@ typedef enum e94aycca_i1029_sub1_opt {
  * @name 0x009E0000 CAN module (MXI1): heartbeat error index 1 ... 32
  * Cyclic node monitoring; one number for each of the monitoring entries 1 ... 32 of C13385 / C14385, which hold the
  * addresses of the nodes.
+ * Cause: The node of the monitoring entry sent no heartbeat telegram to the module in this slot within the time set.
+ * Remedy: Reactivate the CAN node: switch the mains off and on, restart the controller (C00002 = 11000) or reset the
+ * node (C00002 = 92).
+ * Remedy: Set the heartbeat consumer time of the entry anew (C13385 / C14385) or switch the monitoring off.
+ * Remedy: Reset the error status if it is still active.
+ * Remedy: Save the parameter set (C00002 = 11) before you switch the mains or restart the controller.
  * Preset response: No response. Selectable: None, Fault, Trouble, Quick stop by trouble, Warning locked, Warning,
  * Information. Adjustable in C13613/1...32.
  * EDS94AYCCA-EN-5.0, 12.2 p. 92.
@@ -5631,6 +5653,9 @@ typedef enum e94aycca_i1029_sub1_opt {
 /**
  * @name 0x009E0020 CAN module (MXI1): life guarding error
  * Cyclic node monitoring.
+ * Cause: The module in this slot is a slave, and the longest time allowed between two node guarding telegrams (RTR) of
+ * the master ran out.
+ * Remedy: Set the life guarding time anew or switch the monitoring off.
  * Preset response: No response. Selectable: None, Fault, Trouble, Quick stop by trouble, Warning locked, Warning,
  * Information. Adjustable in C13614.
  * EDS94AYCCA-EN-5.0, 12.2 p. 92.
@@ -5642,6 +5667,11 @@ typedef enum e94aycca_i1029_sub1_opt {
 /**
  * @name 0x009E0021 CAN module (MXI1): NMT slave configuration incomplete
  * Configuration error in the network management of the slave in this slot.
+ * Cause: The download of the "Engineer" or "PLC Designer" project was faulty.
+ * Cause: The "Engineer" or "PLC Designer" project holds CAN settings that DS301 V4.02 does not allow.
+ * Cause: Node guarding or heartbeat is set wrongly.
+ * Remedy: Download the project again.
+ * Remedy: Correct the CAN settings of the project, then generate the project anew.
  * Preset response: Warning locked. Selectable: Warning locked.
  * EDS94AYCCA-EN-5.0, 12.2 p. 92.
  * Erratum error-configuration-faulty: printed (detail): ... faulty; used: ... incomplete.
@@ -5653,6 +5683,10 @@ typedef enum e94aycca_i1029_sub1_opt {
 /**
  * @name 0x009F0000 CAN module (MXI1): emergency configuration incomplete
  * The emergency configuration of the module in this slot is faulty.
+ * Cause: The download of the "Engineer" or "PLC Designer" project was faulty.
+ * Cause: The "Engineer" or "PLC Designer" project holds CAN settings that DS301 V4.02 does not allow.
+ * Remedy: Download the project again.
+ * Remedy: Correct the CAN settings of the project, then generate the project anew.
  * Preset response: Warning locked. Selectable: Warning locked.
  * EDS94AYCCA-EN-5.0, 12.2 p. 93.
  * Erratum error-configuration-faulty: printed (detail): ... faulty; used: ... incomplete.
@@ -5665,6 +5699,13 @@ typedef enum e94aycca_i1029_sub1_opt {
  * @name 0x00A00000 CAN module (MXI1): node guarding error 1 ... 32
  * Cyclic node monitoring; one number for each of the monitoring entries 1 ... 32 of C13386 / C14386, which hold the
  * addresses of the nodes.
+ * Cause: The node of the monitoring entry did not answer a node guarding telegram (RTR) of the master in this slot
+ * within the time set.
+ * Remedy: Reactivate the CAN node: switch the mains off and on, restart the controller (C00002 = 11000) or reset the
+ * node (C00002 = 92).
+ * Remedy: Set the guard time of the entry anew (C13386 / C14386) or switch the monitoring off.
+ * Remedy: Reset the error status if it is still active.
+ * Remedy: Save the parameter set (C00002 = 11) before you switch the mains or restart the controller.
  * Preset response: No response. Selectable: None, Fault, Trouble, Quick stop by trouble, Warning locked, Warning,
  * Information. Adjustable in C13612/1...32.
  * EDS94AYCCA-EN-5.0, 12.2 p. 93.
@@ -5684,6 +5725,11 @@ typedef enum e94aycca_i1029_sub1_opt {
 /**
  * @name 0x00A00020 CAN module (MXI1): NMT master configuration incomplete
  * Configuration error in the network management of the master in this slot.
+ * Cause: The download of the "Engineer" or "PLC Designer" project was faulty.
+ * Cause: The "Engineer" or "PLC Designer" project holds CAN settings that DS301 V4.02 does not allow.
+ * Cause: Node guarding or heartbeat is set wrongly.
+ * Remedy: Download the project again.
+ * Remedy: Correct the CAN settings of the project, then generate the project anew.
  * Preset response: Warning locked. Selectable: Warning locked.
  * EDS94AYCCA-EN-5.0, 12.2 p. 93.
  * Erratum error-configuration-faulty: printed (detail): ... faulty; used: ... incomplete.
@@ -5695,6 +5741,12 @@ typedef enum e94aycca_i1029_sub1_opt {
 /**
  * @name 0x00A10000 CAN module (MXI1) RPDO1: telegram n. received or faulty
  * Error of CAN-IN1 in this slot.
+ * Cause: The received PDO has the wrong length.
+ * Cause: An error occurred during the transmission.
+ * Cause: The time monitoring of the PDO has responded.
+ * Remedy: Set the right telegram length in the CAN master, which transmits the PDO.
+ * Remedy: Remove interference from the surroundings, for example poor EMC.
+ * Remedy: Choose another monitoring time or switch the time monitoring off.
  * Preset response: No response. Selectable: None, Fault, Trouble, Quick stop by trouble, Warning locked, Warning,
  * Information. Adjustable in C13591/1.
  * EDS94AYCCA-EN-5.0, 12.2 p. 93.
@@ -5709,6 +5761,12 @@ typedef enum e94aycca_i1029_sub1_opt {
 /**
  * @name 0x00A10001 CAN module (MXI1) RPDO2: telegram n. received or faulty
  * Error of CAN-IN2 in this slot.
+ * Cause: The received PDO has the wrong length.
+ * Cause: An error occurred during the transmission.
+ * Cause: The time monitoring of the PDO has responded.
+ * Remedy: Set the right telegram length in the CAN master, which transmits the PDO.
+ * Remedy: Remove interference from the surroundings, for example poor EMC.
+ * Remedy: Choose another monitoring time or switch the time monitoring off.
  * Preset response: No response. Selectable: None, Fault, Trouble, Quick stop by trouble, Warning locked, Warning,
  * Information. Adjustable in C13591/2.
  * EDS94AYCCA-EN-5.0, 12.2 p. 94.
@@ -5723,6 +5781,12 @@ typedef enum e94aycca_i1029_sub1_opt {
 /**
  * @name 0x00A10002 CAN module (MXI1) RPDO3: telegram n. received or faulty
  * Error of CAN-IN3 in this slot.
+ * Cause: The received PDO has the wrong length.
+ * Cause: An error occurred during the transmission.
+ * Cause: The time monitoring of the PDO has responded.
+ * Remedy: Set the right telegram length in the CAN master, which transmits the PDO.
+ * Remedy: Remove interference from the surroundings, for example poor EMC.
+ * Remedy: Choose another monitoring time or switch the time monitoring off.
  * Preset response: No response. Selectable: None, Fault, Trouble, Quick stop by trouble, Warning locked, Warning,
  * Information. Adjustable in C13591/3.
  * EDS94AYCCA-EN-5.0, 12.2 p. 94.
@@ -5737,6 +5801,12 @@ typedef enum e94aycca_i1029_sub1_opt {
 /**
  * @name 0x00A10003 CAN module (MXI1) RPDO4: telegram n. received or faulty
  * Error of CAN-IN4 in this slot.
+ * Cause: The received PDO has the wrong length.
+ * Cause: An error occurred during the transmission.
+ * Cause: The time monitoring of the PDO has responded.
+ * Remedy: Set the right telegram length in the CAN master, which transmits the PDO.
+ * Remedy: Remove interference from the surroundings, for example poor EMC.
+ * Remedy: Choose another monitoring time or switch the time monitoring off.
  * Preset response: No response. Selectable: None, Fault, Trouble, Quick stop by trouble, Warning locked, Warning,
  * Information. Adjustable in C13591/4.
  * EDS94AYCCA-EN-5.0, 12.2 p. 94.
@@ -5751,6 +5821,12 @@ typedef enum e94aycca_i1029_sub1_opt {
 /**
  * @name 0x00A10004 CAN module (MXI1) RPDO5: telegram n. received or faulty
  * Error of CAN-IN5 in this slot.
+ * Cause: The received PDO has the wrong length.
+ * Cause: An error occurred during the transmission.
+ * Cause: The time monitoring of the PDO has responded.
+ * Remedy: Set the right telegram length in the CAN master, which transmits the PDO.
+ * Remedy: Remove interference from the surroundings, for example poor EMC.
+ * Remedy: Choose another monitoring time or switch the time monitoring off.
  * Preset response: No response. Selectable: None, Fault, Trouble, Quick stop by trouble, Warning locked, Warning,
  * Information.
  * EDS94AYCCA-EN-5.0, 12.2 p. 94.
@@ -5768,6 +5844,12 @@ typedef enum e94aycca_i1029_sub1_opt {
 /**
  * @name 0x00A10005 CAN module (MXI1) RPDO6: telegram n. received or faulty
  * Error of CAN-IN6 in this slot.
+ * Cause: The received PDO has the wrong length.
+ * Cause: An error occurred during the transmission.
+ * Cause: The time monitoring of the PDO has responded.
+ * Remedy: Set the right telegram length in the CAN master, which transmits the PDO.
+ * Remedy: Remove interference from the surroundings, for example poor EMC.
+ * Remedy: Choose another monitoring time or switch the time monitoring off.
  * Preset response: No response. Selectable: None, Fault, Trouble, Quick stop by trouble, Warning locked, Warning,
  * Information.
  * EDS94AYCCA-EN-5.0, 12.2 p. 94.
@@ -5785,6 +5867,12 @@ typedef enum e94aycca_i1029_sub1_opt {
 /**
  * @name 0x00A10006 CAN module (MXI1) RPDO7: telegram n. received or faulty
  * Error of CAN-IN7 in this slot.
+ * Cause: The received PDO has the wrong length.
+ * Cause: An error occurred during the transmission.
+ * Cause: The time monitoring of the PDO has responded.
+ * Remedy: Set the right telegram length in the CAN master, which transmits the PDO.
+ * Remedy: Remove interference from the surroundings, for example poor EMC.
+ * Remedy: Choose another monitoring time or switch the time monitoring off.
  * Preset response: No response. Selectable: None, Fault, Trouble, Quick stop by trouble, Warning locked, Warning,
  * Information.
  * EDS94AYCCA-EN-5.0, 12.2 p. 95.
@@ -5802,6 +5890,12 @@ typedef enum e94aycca_i1029_sub1_opt {
 /**
  * @name 0x00A10007 CAN module (MXI1) RPDO8: telegram n. received or faulty
  * Error of CAN-IN8 in this slot.
+ * Cause: The received PDO has the wrong length.
+ * Cause: An error occurred during the transmission.
+ * Cause: The time monitoring of the PDO has responded.
+ * Remedy: Set the right telegram length in the CAN master, which transmits the PDO.
+ * Remedy: Remove interference from the surroundings, for example poor EMC.
+ * Remedy: Choose another monitoring time or switch the time monitoring off.
  * Preset response: No response. Selectable: None, Fault, Trouble, Quick stop by trouble, Warning locked, Warning,
  * Information.
  * EDS94AYCCA-EN-5.0, 12.2 p. 95.
@@ -5819,6 +5913,11 @@ typedef enum e94aycca_i1029_sub1_opt {
 /**
  * @name 0x00A10008 CAN module (MXI1) PDO manager: configuration incomplete
  * Error in the PDO configuration of the module in this slot.
+ * Cause: The download of the project was faulty.
+ * Cause: The "Engineer" or "PLC Designer" project holds CAN settings that DS301 V4.02 does not allow.
+ * Cause: Mapping variables carry CANopen indices that do not agree with DS405.
+ * Remedy: Download the project again.
+ * Remedy: Correct the CAN settings of the project, then generate the project anew.
  * Preset response: Warning locked. Selectable: Warning locked.
  * EDS94AYCCA-EN-5.0, 12.2 p. 95.
  * Erratum error-configuration-faulty: printed (detail): ... faulty; used: ... incomplete.
@@ -5830,6 +5929,10 @@ typedef enum e94aycca_i1029_sub1_opt {
 /**
  * @name 0x00A20000 CAN module (MXI1) SDO server: configuration incomplete
  * Configuration error of the SDO server in this slot.
+ * Cause: The download of the project was faulty.
+ * Cause: The "Engineer" or "PLC Designer" project holds SDO server settings that DS301 V4.02 does not allow.
+ * Remedy: Download the project again.
+ * Remedy: Correct the CAN settings of the project, then generate the project anew.
  * Preset response: Warning locked. Selectable: Warning locked.
  * EDS94AYCCA-EN-5.0, 12.2 p. 95.
  * Erratum error-configuration-faulty: printed (detail): ... faulty; used: ... incomplete.
@@ -5841,6 +5944,10 @@ typedef enum e94aycca_i1029_sub1_opt {
 /**
  * @name 0x00A30000 CAN module (MXI1) SDO client: configuration incomplete
  * Configuration error of the SDO client in this slot.
+ * Cause: The download of the project was faulty.
+ * Cause: The "Engineer" or "PLC Designer" project holds SDO client settings that DS301 V4.02 does not allow.
+ * Remedy: Download the project again.
+ * Remedy: Correct the CAN settings of the project, then generate the project anew.
  * Preset response: Warning locked. Selectable: Warning locked.
  * EDS94AYCCA-EN-5.0, 12.2 p. 96.
  * Erratum error-configuration-faulty: printed (detail): ... faulty; used: ... incomplete.
@@ -5852,6 +5959,12 @@ typedef enum e94aycca_i1029_sub1_opt {
 /**
  * @name 0x00AC0000 CAN module (MXI2): bus-off
  * The CANopen module in this slot is in the "bus-off" state.
+ * Cause: The cable is defective, for example by a loose contact.
+ * Cause: The module in this slot received too many faulty telegrams.
+ * Cause: Two CAN nodes share one node address.
+ * Remedy: Remove interference from the surroundings, for example poor EMC.
+ * Remedy: Repair the loose contact and tighten the adapter.
+ * Remedy: Give each node an address of its own.
  * Preset response: Information. Selectable: None, Fault, Trouble, Quick stop by trouble, Warning locked, Warning,
  * Information. Adjustable in C14595.
  * EDS94AYCCA-EN-5.0, 12.2 p. 96.
@@ -5863,6 +5976,8 @@ typedef enum e94aycca_i1029_sub1_opt {
 /**
  * @name 0x00AC0001 CAN module (MXI2): invalid node address 0
  * Error of initialisation: node address 1 is used, since 0 is not permitted.
+ * Cause: The DIP switches are to set the node address of the module in this slot, but all of them stand at 0.
+ * Remedy: Set a node address other than 0, then switch the mains off and on.
  * Preset response: Warning. Selectable: Warning.
  * EDS94AYCCA-EN-5.0, 12.2 p. 96.
  * Erratum all-switches-off: printed: C13350 / 14350: Switches 1 ... 64 = OFF (6.2.1, table p. 33), all set to "0";
@@ -5876,6 +5991,10 @@ typedef enum e94aycca_i1029_sub1_opt {
 /**
  * @name 0x00AC0002 CAN module (MXI2): basic configuration invalid
  * Configuration error of the CANopen module in this slot.
+ * Cause: The download of the "Engineer" or "PLC Designer" project was faulty.
+ * Cause: The "Engineer" or "PLC Designer" project holds CAN settings that DS301 V4.02 does not allow.
+ * Remedy: Download the project again.
+ * Remedy: Correct the CAN settings of the project, then generate the project anew.
  * Preset response: Warning locked. Selectable: Warning locked.
  * EDS94AYCCA-EN-5.0, 12.2 p. 96.
  * @{
@@ -5887,6 +6006,12 @@ typedef enum e94aycca_i1029_sub1_opt {
  * @name 0x00AD0000 CAN module (MXI2): heartbeat error index 1 ... 32
  * Cyclic node monitoring; one number for each of the monitoring entries 1 ... 32 of C13385 / C14385, which hold the
  * addresses of the nodes.
+ * Cause: The node of the monitoring entry sent no heartbeat telegram to the module in this slot within the time set.
+ * Remedy: Reactivate the CAN node: switch the mains off and on, restart the controller (C00002 = 11000) or reset the
+ * node (C00002 = 92).
+ * Remedy: Set the heartbeat consumer time of the entry anew (C13385 / C14385) or switch the monitoring off.
+ * Remedy: Reset the error status if it is still active.
+ * Remedy: Save the parameter set (C00002 = 11) before you switch the mains or restart the controller.
  * Preset response: No response. Selectable: None, Fault, Trouble, Quick stop by trouble, Warning locked, Warning,
  * Information. Adjustable in C14613/1...32.
  * EDS94AYCCA-EN-5.0, 12.2 p. 97.
@@ -5909,6 +6034,9 @@ typedef enum e94aycca_i1029_sub1_opt {
 /**
  * @name 0x00AD0020 CAN module (MXI2): life guarding error
  * Cyclic node monitoring.
+ * Cause: The module in this slot is a slave, and the longest time allowed between two node guarding telegrams (RTR) of
+ * the master ran out.
+ * Remedy: Set the life guarding time anew or switch the monitoring off.
  * Preset response: No response. Selectable: None, Fault, Trouble, Quick stop by trouble, Warning locked, Warning,
  * Information. Adjustable in C14614.
  * EDS94AYCCA-EN-5.0, 12.2 p. 97.
@@ -5921,6 +6049,11 @@ typedef enum e94aycca_i1029_sub1_opt {
 /**
  * @name 0x00AD0021 CAN module (MXI2): NMT slave configuration incomplete
  * Configuration error in the network management of the slave in this slot.
+ * Cause: The download of the "Engineer" or "PLC Designer" project was faulty.
+ * Cause: The "Engineer" or "PLC Designer" project holds CAN settings that DS301 V4.02 does not allow.
+ * Cause: Node guarding or heartbeat is set wrongly.
+ * Remedy: Download the project again.
+ * Remedy: Correct the CAN settings of the project, then generate the project anew.
  * Preset response: Warning locked. Selectable: Warning locked.
  * EDS94AYCCA-EN-5.0, 12.2 p. 97.
  * Erratum dump-mx12-faulty: printed (detail MXI2): ... (MX12)... faulty; used: ... (MXI2)... incomplete.
@@ -5932,6 +6065,10 @@ typedef enum e94aycca_i1029_sub1_opt {
 /**
  * @name 0x00AE0000 CAN module (MXI2): emergency configuration incomplete
  * The emergency configuration of the module in this slot is faulty.
+ * Cause: The download of the "Engineer" or "PLC Designer" project was faulty.
+ * Cause: The "Engineer" or "PLC Designer" project holds CAN settings that DS301 V4.02 does not allow.
+ * Remedy: Download the project again.
+ * Remedy: Correct the CAN settings of the project, then generate the project anew.
  * Preset response: Warning locked. Selectable: Warning locked.
  * EDS94AYCCA-EN-5.0, 12.2 p. 97.
  * Erratum dump-mx12-faulty: printed (detail MXI2): ... (MX12)... faulty; used: ... (MXI2)... incomplete.
@@ -5944,6 +6081,13 @@ typedef enum e94aycca_i1029_sub1_opt {
  * @name 0x00AF0000 CAN module (MXI2): node guarding error 1 ... 32
  * Cyclic node monitoring; one number for each of the monitoring entries 1 ... 32 of C13386 / C14386, which hold the
  * addresses of the nodes.
+ * Cause: The node of the monitoring entry did not answer a node guarding telegram (RTR) of the master in this slot
+ * within the time set.
+ * Remedy: Reactivate the CAN node: switch the mains off and on, restart the controller (C00002 = 11000) or reset the
+ * node (C00002 = 92).
+ * Remedy: Set the guard time of the entry anew (C13386 / C14386) or switch the monitoring off.
+ * Remedy: Reset the error status if it is still active.
+ * Remedy: Save the parameter set (C00002 = 11) before you switch the mains or restart the controller.
  * Preset response: No response. Selectable: None, Fault, Trouble, Quick stop by trouble, Warning locked, Warning,
  * Information. Adjustable in C14612/1...32.
  * EDS94AYCCA-EN-5.0, 12.2 p. 98.
@@ -5962,6 +6106,11 @@ typedef enum e94aycca_i1029_sub1_opt {
 /**
  * @name 0x00AF0020 CAN module (MXI2): NMT master configuration incomplete
  * Configuration error in the network management of the master in this slot.
+ * Cause: The download of the "Engineer" or "PLC Designer" project was faulty.
+ * Cause: The "Engineer" or "PLC Designer" project holds CAN settings that DS301 V4.02 does not allow.
+ * Cause: Node guarding or heartbeat is set wrongly.
+ * Remedy: Download the project again.
+ * Remedy: Correct the CAN settings of the project, then generate the project anew.
  * Preset response: Warning locked. Selectable: Warning locked.
  * EDS94AYCCA-EN-5.0, 12.2 p. 98.
  * Erratum error-configuration-faulty: printed (detail): ... faulty; used: ... incomplete.
@@ -5973,6 +6122,12 @@ typedef enum e94aycca_i1029_sub1_opt {
 /**
  * @name 0x00B00000 CAN module (MXI2) RPDO1: telegram n. received or faulty
  * Error of CAN-IN1 in this slot.
+ * Cause: The received PDO has the wrong length.
+ * Cause: An error occurred during the transmission.
+ * Cause: The time monitoring of the PDO has responded.
+ * Remedy: Set the right telegram length in the CAN master, which transmits the PDO.
+ * Remedy: Remove interference from the surroundings, for example poor EMC.
+ * Remedy: Choose another monitoring time or switch the time monitoring off.
  * Preset response: No response. Selectable: None, Fault, Trouble, Quick stop by trouble, Warning locked, Warning,
  * Information. Adjustable in C14591/1.
  * EDS94AYCCA-EN-5.0, 12.2 p. 98.
@@ -5986,6 +6141,12 @@ typedef enum e94aycca_i1029_sub1_opt {
 /**
  * @name 0x00B00001 CAN module (MXI2) RPDO2: telegram n. received or faulty
  * Error of CAN-IN2 in this slot.
+ * Cause: The received PDO has the wrong length.
+ * Cause: An error occurred during the transmission.
+ * Cause: The time monitoring of the PDO has responded.
+ * Remedy: Set the right telegram length in the CAN master, which transmits the PDO.
+ * Remedy: Remove interference from the surroundings, for example poor EMC.
+ * Remedy: Choose another monitoring time or switch the time monitoring off.
  * Preset response: No response. Selectable: None, Fault, Trouble, Quick stop by trouble, Warning locked, Warning,
  * Information. Adjustable in C14591/2.
  * EDS94AYCCA-EN-5.0, 12.2 p. 98.
@@ -5999,6 +6160,12 @@ typedef enum e94aycca_i1029_sub1_opt {
 /**
  * @name 0x00B00002 CAN module (MXI2) RPDO3: telegram n. received or faulty
  * Error of CAN-IN3 in this slot.
+ * Cause: The received PDO has the wrong length.
+ * Cause: An error occurred during the transmission.
+ * Cause: The time monitoring of the PDO has responded.
+ * Remedy: Set the right telegram length in the CAN master, which transmits the PDO.
+ * Remedy: Remove interference from the surroundings, for example poor EMC.
+ * Remedy: Choose another monitoring time or switch the time monitoring off.
  * Preset response: No response. Selectable: None, Fault, Trouble, Quick stop by trouble, Warning locked, Warning,
  * Information. Adjustable in C14591/3.
  * EDS94AYCCA-EN-5.0, 12.2 p. 99.
@@ -6012,6 +6179,12 @@ typedef enum e94aycca_i1029_sub1_opt {
 /**
  * @name 0x00B00003 CAN module (MXI2) RPDO4: telegram n. received or faulty
  * Error of CAN-IN4 in this slot.
+ * Cause: The received PDO has the wrong length.
+ * Cause: An error occurred during the transmission.
+ * Cause: The time monitoring of the PDO has responded.
+ * Remedy: Set the right telegram length in the CAN master, which transmits the PDO.
+ * Remedy: Remove interference from the surroundings, for example poor EMC.
+ * Remedy: Choose another monitoring time or switch the time monitoring off.
  * Preset response: No response. Selectable: None, Fault, Trouble, Quick stop by trouble, Warning locked, Warning,
  * Information. Adjustable in C14591/4.
  * EDS94AYCCA-EN-5.0, 12.2 p. 99.
@@ -6025,6 +6198,12 @@ typedef enum e94aycca_i1029_sub1_opt {
 /**
  * @name 0x00B00004 CAN module (MXI2) RPDO5: telegram n. received or faulty
  * Error of CAN-IN5 in this slot.
+ * Cause: The received PDO has the wrong length.
+ * Cause: An error occurred during the transmission.
+ * Cause: The time monitoring of the PDO has responded.
+ * Remedy: Set the right telegram length in the CAN master, which transmits the PDO.
+ * Remedy: Remove interference from the surroundings, for example poor EMC.
+ * Remedy: Choose another monitoring time or switch the time monitoring off.
  * Preset response: No response. Selectable: None, Fault, Trouble, Quick stop by trouble, Warning locked, Warning,
  * Information.
  * EDS94AYCCA-EN-5.0, 12.2 p. 99.
@@ -6041,6 +6220,12 @@ typedef enum e94aycca_i1029_sub1_opt {
 /**
  * @name 0x00B00005 CAN module (MXI2) RPDO6: telegram n. received or faulty
  * Error of CAN-IN6 in this slot.
+ * Cause: The received PDO has the wrong length.
+ * Cause: An error occurred during the transmission.
+ * Cause: The time monitoring of the PDO has responded.
+ * Remedy: Set the right telegram length in the CAN master, which transmits the PDO.
+ * Remedy: Remove interference from the surroundings, for example poor EMC.
+ * Remedy: Choose another monitoring time or switch the time monitoring off.
  * Preset response: No response. Selectable: None, Fault, Trouble, Quick stop by trouble, Warning locked, Warning,
  * Information.
  * EDS94AYCCA-EN-5.0, 12.2 p. 99.
@@ -6057,6 +6242,12 @@ typedef enum e94aycca_i1029_sub1_opt {
 /**
  * @name 0x00B00006 CAN module (MXI2) RPDO7: telegram n. received or faulty
  * Error of CAN-IN7 in this slot.
+ * Cause: The received PDO has the wrong length.
+ * Cause: An error occurred during the transmission.
+ * Cause: The time monitoring of the PDO has responded.
+ * Remedy: Set the right telegram length in the CAN master, which transmits the PDO.
+ * Remedy: Remove interference from the surroundings, for example poor EMC.
+ * Remedy: Choose another monitoring time or switch the time monitoring off.
  * Preset response: No response. Selectable: None, Fault, Trouble, Quick stop by trouble, Warning locked, Warning,
  * Information.
  * EDS94AYCCA-EN-5.0, 12.2 p. 99.
@@ -6073,6 +6264,12 @@ typedef enum e94aycca_i1029_sub1_opt {
 /**
  * @name 0x00B00007 CAN module (MXI2) RPDO8: telegram n. received or faulty
  * Error of CAN-IN8 in this slot.
+ * Cause: The received PDO has the wrong length.
+ * Cause: An error occurred during the transmission.
+ * Cause: The time monitoring of the PDO has responded.
+ * Remedy: Set the right telegram length in the CAN master, which transmits the PDO.
+ * Remedy: Remove interference from the surroundings, for example poor EMC.
+ * Remedy: Choose another monitoring time or switch the time monitoring off.
  * Preset response: No response. Selectable: None, Fault, Trouble, Quick stop by trouble, Warning locked, Warning,
  * Information.
  * EDS94AYCCA-EN-5.0, 12.2 p. 100.
@@ -6089,6 +6286,11 @@ typedef enum e94aycca_i1029_sub1_opt {
 /**
  * @name 0x00B00008 CAN module (MXI2) PDO manager: configuration incomplete
  * Error in the PDO configuration of the module in this slot.
+ * Cause: The download of the project was faulty.
+ * Cause: The "Engineer" or "PLC Designer" project holds CAN settings that DS301 V4.02 does not allow.
+ * Cause: Mapping variables carry CANopen indices that do not agree with DS405.
+ * Remedy: Download the project again.
+ * Remedy: Correct the CAN settings of the project, then generate the project anew.
  * Preset response: Warning locked. Selectable: Warning locked.
  * EDS94AYCCA-EN-5.0, 12.2 p. 100.
  * Erratum error-configuration-faulty: printed (detail): ... faulty; used: ... incomplete.
@@ -6100,6 +6302,10 @@ typedef enum e94aycca_i1029_sub1_opt {
 /**
  * @name 0x00B10000 CAN module (MXI2) SDO server: configuration incomplete
  * Configuration error of the SDO server in this slot.
+ * Cause: The download of the project was faulty.
+ * Cause: The "Engineer" or "PLC Designer" project holds SDO server settings that DS301 V4.02 does not allow.
+ * Remedy: Download the project again.
+ * Remedy: Correct the CAN settings of the project, then generate the project anew.
  * Preset response: Warning locked. Selectable: Warning locked.
  * EDS94AYCCA-EN-5.0, 12.2 p. 100.
  * Erratum error-configuration-faulty: printed (detail): ... faulty; used: ... incomplete.
@@ -6111,6 +6317,10 @@ typedef enum e94aycca_i1029_sub1_opt {
 /**
  * @name 0x00B20000 CAN module (MXI2) SDO client: configuration incomplete
  * Configuration error of the SDO client in this slot.
+ * Cause: The download of the project was faulty.
+ * Cause: The "Engineer" or "PLC Designer" project holds SDO client settings that DS301 V4.02 does not allow.
+ * Remedy: Download the project again.
+ * Remedy: Correct the CAN settings of the project, then generate the project anew.
  * Preset response: Warning locked. Selectable: Warning locked.
  * EDS94AYCCA-EN-5.0, 12.2 p. 100.
  * Erratum error-configuration-faulty: printed (detail): ... faulty; used: ... incomplete.
@@ -6133,6 +6343,8 @@ typedef enum e94aycca_i1029_sub1_opt {
  * @name 0x1000 Generic error
  * An error of the standard device. The last four bytes of the telegram hold its Lenze error number as C00168 shows it;
  * C00166 describes the cause.
+ * Cause: The standard device has an error whose response is Fault, Trouble, Quick stop by trouble, Warning locked,
+ * Warning or System fault.
  * Error register: 0x01.
  * EDS94AYCCA-EN-5.0, 10.3 p. 84.
  * Erratum emergency-0x1000-responses: printed: Fault, Trouble, Quick stop by trouble, Warning, Warning locked, System
@@ -6177,6 +6389,7 @@ typedef enum e94aycca_i1029_sub1_opt {
 
 /**
  * @name 0x8150 Collision of identifiers (COB-IDs)
+ * Cause: One identifier is set both for receiving and for sending.
  * Error register: 0x11.
  * EDS94AYCCA-EN-5.0, 10.3 p. 84.
  * @{

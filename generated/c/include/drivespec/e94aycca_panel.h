@@ -290,6 +290,8 @@ static inline bool e94aycca_switch_baud_rate_position(uint32_t value, uint32_t *
     return false;
 }
 
+#define E94AYCCA_LED_MS_COUNT 1u ///< LEDs of: Status display MS
+
 /**
  * Status display MS.
  * LEDs: MS (green).
@@ -297,30 +299,38 @@ static inline bool e94aycca_switch_baud_rate_position(uint32_t value, uint32_t *
  */
 typedef struct e94aycca_led_ms_row {
     char state[22u]; ///< What it means.
-    drivespec_pattern patterns[1u]; ///< Of each LED, in the order above.
+    drivespec_pattern patterns[E94AYCCA_LED_MS_COUNT]; ///< Of each LED, in the order above.
 } e94aycca_led_ms_row;
 
 static const e94aycca_led_ms_row e94aycca_led_ms_rows[] = {
     {"Supplied with voltage", { { "", 0u, 0u, DRIVESPEC_LIGHT_ON, 0u } }},
 };
 
-/** Row of what is seen of each LED, an exact one rather than one that agrees; NULL where there is none. */
-static inline const e94aycca_led_ms_row *e94aycca_led_ms_find(const drivespec_pattern *seen)
+/**
+ * Next row behind @p after (NULL: the first of all) that fits what is seen, NULL where there is none.
+ * @p seen holds one pattern for each LED, E94AYCCA_LED_MS_COUNT in all, in the order above.
+ */
+static inline const e94aycca_led_ms_row *e94aycca_led_ms_next(const drivespec_pattern seen[E94AYCCA_LED_MS_COUNT],
+                                                                const e94aycca_led_ms_row *after)
 {
-    for (unsigned exact = 2u; exact-- > 0u;) {
-        for (size_t i = 0u; i < sizeof e94aycca_led_ms_rows / sizeof e94aycca_led_ms_rows[0]; i++) {
-            size_t fitting = 0u;
-            while ((fitting < 1u) &&
-                   drivespec_pattern_fits(&e94aycca_led_ms_rows[i].patterns[fitting], &seen[fitting], exact != 0u)) {
-                fitting++;
-            }
-            if (fitting == 1u) {
-                return &e94aycca_led_ms_rows[i];
-            }
-        }
+    const e94aycca_led_ms_row *const end = e94aycca_led_ms_rows + sizeof e94aycca_led_ms_rows / sizeof e94aycca_led_ms_rows[0];
+    const e94aycca_led_ms_row *row = (after != NULL) ? after + 1 : e94aycca_led_ms_rows;
+
+    while ((row != end) && !drivespec_patterns_fit(row->patterns, seen, E94AYCCA_LED_MS_COUNT)) {
+        row++;
     }
-    return NULL;
+    return (row != end) ? row : NULL;
 }
+
+/** The only row that fits what is seen, as in e94aycca_led_ms_next; NULL where none or several fit. */
+static inline const e94aycca_led_ms_row *e94aycca_led_ms_find(const drivespec_pattern seen[E94AYCCA_LED_MS_COUNT])
+{
+    const e94aycca_led_ms_row *const row = e94aycca_led_ms_next(seen, NULL);
+
+    return ((row != NULL) && (e94aycca_led_ms_next(seen, row) == NULL)) ? row : NULL;
+}
+
+#define E94AYCCA_LED_DE_COUNT 1u ///< LEDs of: Status display DE
 
 /**
  * Status display DE.
@@ -329,30 +339,38 @@ static inline const e94aycca_led_ms_row *e94aycca_led_ms_find(const drivespec_pa
  */
 typedef struct e94aycca_led_de_row {
     char state[36u]; ///< What it means.
-    drivespec_pattern patterns[1u]; ///< Of each LED, in the order above.
+    drivespec_pattern patterns[E94AYCCA_LED_DE_COUNT]; ///< Of each LED, in the order above.
 } e94aycca_led_de_row;
 
 static const e94aycca_led_de_row e94aycca_led_de_rows[] = {
     {"Not accepted by the standard device", { { "", 0u, 0u, DRIVESPEC_LIGHT_ON, 0u } }},
 };
 
-/** Row of what is seen of each LED, an exact one rather than one that agrees; NULL where there is none. */
-static inline const e94aycca_led_de_row *e94aycca_led_de_find(const drivespec_pattern *seen)
+/**
+ * Next row behind @p after (NULL: the first of all) that fits what is seen, NULL where there is none.
+ * @p seen holds one pattern for each LED, E94AYCCA_LED_DE_COUNT in all, in the order above.
+ */
+static inline const e94aycca_led_de_row *e94aycca_led_de_next(const drivespec_pattern seen[E94AYCCA_LED_DE_COUNT],
+                                                                const e94aycca_led_de_row *after)
 {
-    for (unsigned exact = 2u; exact-- > 0u;) {
-        for (size_t i = 0u; i < sizeof e94aycca_led_de_rows / sizeof e94aycca_led_de_rows[0]; i++) {
-            size_t fitting = 0u;
-            while ((fitting < 1u) &&
-                   drivespec_pattern_fits(&e94aycca_led_de_rows[i].patterns[fitting], &seen[fitting], exact != 0u)) {
-                fitting++;
-            }
-            if (fitting == 1u) {
-                return &e94aycca_led_de_rows[i];
-            }
-        }
+    const e94aycca_led_de_row *const end = e94aycca_led_de_rows + sizeof e94aycca_led_de_rows / sizeof e94aycca_led_de_rows[0];
+    const e94aycca_led_de_row *row = (after != NULL) ? after + 1 : e94aycca_led_de_rows;
+
+    while ((row != end) && !drivespec_patterns_fit(row->patterns, seen, E94AYCCA_LED_DE_COUNT)) {
+        row++;
     }
-    return NULL;
+    return (row != end) ? row : NULL;
 }
+
+/** The only row that fits what is seen, as in e94aycca_led_de_next; NULL where none or several fit. */
+static inline const e94aycca_led_de_row *e94aycca_led_de_find(const drivespec_pattern seen[E94AYCCA_LED_DE_COUNT])
+{
+    const e94aycca_led_de_row *const row = e94aycca_led_de_next(seen, NULL);
+
+    return ((row != NULL) && (e94aycca_led_de_next(seen, row) == NULL)) ? row : NULL;
+}
+
+#define E94AYCCA_LED_BS_BE_COUNT 2u ///< LEDs of: Status displays BS and BE
 
 /**
  * Status displays BS and BE.
@@ -361,7 +379,7 @@ static inline const e94aycca_led_de_row *e94aycca_led_de_find(const drivespec_pa
  */
 typedef struct e94aycca_led_bs_be_row {
     char state[40u]; ///< What it means.
-    drivespec_pattern patterns[2u]; ///< Of each LED, in the order above.
+    drivespec_pattern patterns[E94AYCCA_LED_BS_BE_COUNT]; ///< Of each LED, in the order above.
 } e94aycca_led_bs_be_row;
 
 static const e94aycca_led_bs_be_row e94aycca_led_bs_be_rows[] = {
@@ -379,22 +397,28 @@ static const e94aycca_led_bs_be_row e94aycca_led_bs_be_rows[] = {
     {"Stopped / Node guard event", { { "", 1000u, 0u, DRIVESPEC_LIGHT_BLINK, 0u }, { "", 0u, 1000u, DRIVESPEC_LIGHT_FLASH, 2u } }},
 };
 
-/** Row of what is seen of each LED, an exact one rather than one that agrees; NULL where there is none. */
-static inline const e94aycca_led_bs_be_row *e94aycca_led_bs_be_find(const drivespec_pattern *seen)
+/**
+ * Next row behind @p after (NULL: the first of all) that fits what is seen, NULL where there is none.
+ * @p seen holds one pattern for each LED, E94AYCCA_LED_BS_BE_COUNT in all, in the order above.
+ */
+static inline const e94aycca_led_bs_be_row *e94aycca_led_bs_be_next(const drivespec_pattern seen[E94AYCCA_LED_BS_BE_COUNT],
+                                                                const e94aycca_led_bs_be_row *after)
 {
-    for (unsigned exact = 2u; exact-- > 0u;) {
-        for (size_t i = 0u; i < sizeof e94aycca_led_bs_be_rows / sizeof e94aycca_led_bs_be_rows[0]; i++) {
-            size_t fitting = 0u;
-            while ((fitting < 2u) &&
-                   drivespec_pattern_fits(&e94aycca_led_bs_be_rows[i].patterns[fitting], &seen[fitting], exact != 0u)) {
-                fitting++;
-            }
-            if (fitting == 2u) {
-                return &e94aycca_led_bs_be_rows[i];
-            }
-        }
+    const e94aycca_led_bs_be_row *const end = e94aycca_led_bs_be_rows + sizeof e94aycca_led_bs_be_rows / sizeof e94aycca_led_bs_be_rows[0];
+    const e94aycca_led_bs_be_row *row = (after != NULL) ? after + 1 : e94aycca_led_bs_be_rows;
+
+    while ((row != end) && !drivespec_patterns_fit(row->patterns, seen, E94AYCCA_LED_BS_BE_COUNT)) {
+        row++;
     }
-    return NULL;
+    return (row != end) ? row : NULL;
+}
+
+/** The only row that fits what is seen, as in e94aycca_led_bs_be_next; NULL where none or several fit. */
+static inline const e94aycca_led_bs_be_row *e94aycca_led_bs_be_find(const drivespec_pattern seen[E94AYCCA_LED_BS_BE_COUNT])
+{
+    const e94aycca_led_bs_be_row *const row = e94aycca_led_bs_be_next(seen, NULL);
+
+    return ((row != NULL) && (e94aycca_led_bs_be_next(seen, row) == NULL)) ? row : NULL;
 }
 
 #endif

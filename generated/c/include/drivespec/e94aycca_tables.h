@@ -623,16 +623,16 @@ static inline const drivespec_error *e94aycca_find_error(uint8_t kind, uint32_t 
 
     switch (kind) {
     case DRIVESPEC_ERROR_DEVICE:
-        hash = (uint32_t)(hash * UINT32_C(0xDAA66D13)) >> 22u;
-        found = &e94aycca_errors[e94aycca_device_error_places[hash]];
+        hash *= UINT32_C(0xDAA66D13);
+        found = &e94aycca_errors[e94aycca_device_error_places[hash >> 22u]];
         break;
     case DRIVESPEC_ERROR_EMERGENCY:
-        hash = (uint32_t)(hash * UINT32_C(0x36FBEEE7)) >> 28u;
-        found = &e94aycca_errors[e94aycca_emergency_error_places[hash]];
+        hash *= UINT32_C(0x36FBEEE7);
+        found = &e94aycca_errors[e94aycca_emergency_error_places[hash >> 28u]];
         break;
     case DRIVESPEC_ERROR_SDO_ABORT:
-        hash = (uint32_t)(hash * UINT32_C(0x02000800)) >> 25u;
-        found = &e94aycca_errors[e94aycca_sdo_abort_error_places[hash]];
+        hash *= UINT32_C(0x02000800);
+        found = &e94aycca_errors[e94aycca_sdo_abort_error_places[hash >> 25u]];
         break;
     default:
         return NULL;

@@ -49,6 +49,7 @@ typedef enum e94aycca_sdo_command_cs {
  * Parameter data telegram.
  * Writing and reading up to four bytes, the answers to both, and the start of a block, whose length then stands in the
  * data.
+ * Try e94aycca_sdo_error_decode first: its telegrams (Command 0x80) decode as these, too.
  * SDO. EDS94AYCCA-EN-5.0, 9.2 p. 63.
  * Erratum motorola-format: printed: Motorola format (9.2, note p. 63), Low byte, High byte; Low word, High word (9.2,
  * table p. 63), index 0x5FC2 as 0xC2 0x5F (9.3.1, example p. 69); used: low byte first.
@@ -1336,72 +1337,72 @@ typedef struct e94aycca_cob_id_entry_t {
 /** COB-ID, bits 0 ... 10: identifier */
 static inline uint16_t e94aycca_cob_id_entry_get_cob_id_identifier(const e94aycca_cob_id_entry_t *telegram)
 {
-    return (uint16_t)(((uint32_t)telegram->cob_id & UINT32_C(0x000007FF)) >> 0u);
+    return (uint16_t)((telegram->cob_id & UINT32_C(0x000007FF)) >> 0u);
 }
 
 /** Set COB-ID, bits 0 ... 10: identifier */
 static inline drivespec_status e94aycca_cob_id_entry_set_cob_id_identifier(e94aycca_cob_id_entry_t *telegram, uint16_t value)
 {
-    const uint32_t others = (uint32_t)telegram->cob_id & ~UINT32_C(0x000007FF);
+    const uint32_t others = telegram->cob_id & ~UINT32_C(0x000007FF);
 
     if ((value >> 11u) != 0u) {
         return DRIVESPEC_RANGE;
     }
-    telegram->cob_id = (uint32_t)(others | ((uint32_t)value << 0u));
+    telegram->cob_id = (others | ((uint32_t)value << 0u));
     return DRIVESPEC_OK;
 }
 
 /** COB-ID, bits 11 ... 29: extended */
 static inline uint32_t e94aycca_cob_id_entry_get_cob_id_extended(const e94aycca_cob_id_entry_t *telegram)
 {
-    return (uint32_t)(((uint32_t)telegram->cob_id & UINT32_C(0x3FFFF800)) >> 11u);
+    return ((telegram->cob_id & UINT32_C(0x3FFFF800)) >> 11u);
 }
 
 /** Set COB-ID, bits 11 ... 29: extended */
 static inline drivespec_status e94aycca_cob_id_entry_set_cob_id_extended(e94aycca_cob_id_entry_t *telegram, uint32_t value)
 {
-    const uint32_t others = (uint32_t)telegram->cob_id & ~UINT32_C(0x3FFFF800);
+    const uint32_t others = telegram->cob_id & ~UINT32_C(0x3FFFF800);
 
     if ((value >> 19u) != 0u) {
         return DRIVESPEC_RANGE;
     }
-    telegram->cob_id = (uint32_t)(others | ((uint32_t)value << 11u));
+    telegram->cob_id = (others | (value << 11u));
     return DRIVESPEC_OK;
 }
 
 /** COB-ID, bit 30: reserved */
 static inline uint8_t e94aycca_cob_id_entry_get_cob_id_reserved(const e94aycca_cob_id_entry_t *telegram)
 {
-    return (uint8_t)(((uint32_t)telegram->cob_id & UINT32_C(0x40000000)) >> 30u);
+    return (uint8_t)((telegram->cob_id & UINT32_C(0x40000000)) >> 30u);
 }
 
 /** Set COB-ID, bit 30: reserved */
 static inline drivespec_status e94aycca_cob_id_entry_set_cob_id_reserved(e94aycca_cob_id_entry_t *telegram, uint8_t value)
 {
-    const uint32_t others = (uint32_t)telegram->cob_id & ~UINT32_C(0x40000000);
+    const uint32_t others = telegram->cob_id & ~UINT32_C(0x40000000);
 
     if ((value >> 1u) != 0u) {
         return DRIVESPEC_RANGE;
     }
-    telegram->cob_id = (uint32_t)(others | ((uint32_t)value << 30u));
+    telegram->cob_id = (others | ((uint32_t)value << 30u));
     return DRIVESPEC_OK;
 }
 
 /** COB-ID, bit 31: invalid */
 static inline uint8_t e94aycca_cob_id_entry_get_cob_id_invalid(const e94aycca_cob_id_entry_t *telegram)
 {
-    return (uint8_t)(((uint32_t)telegram->cob_id & UINT32_C(0x80000000)) >> 31u);
+    return (uint8_t)((telegram->cob_id & UINT32_C(0x80000000)) >> 31u);
 }
 
 /** Set COB-ID, bit 31: invalid */
 static inline drivespec_status e94aycca_cob_id_entry_set_cob_id_invalid(e94aycca_cob_id_entry_t *telegram, uint8_t value)
 {
-    const uint32_t others = (uint32_t)telegram->cob_id & ~UINT32_C(0x80000000);
+    const uint32_t others = telegram->cob_id & ~UINT32_C(0x80000000);
 
     if ((value >> 1u) != 0u) {
         return DRIVESPEC_RANGE;
     }
-    telegram->cob_id = (uint32_t)(others | ((uint32_t)value << 31u));
+    telegram->cob_id = (others | ((uint32_t)value << 31u));
     return DRIVESPEC_OK;
 }
 
@@ -1485,72 +1486,72 @@ typedef struct e94aycca_pdo_cob_id_entry_t {
 /** COB-ID, bits 0 ... 10: identifier */
 static inline uint16_t e94aycca_pdo_cob_id_entry_get_cob_id_identifier(const e94aycca_pdo_cob_id_entry_t *telegram)
 {
-    return (uint16_t)(((uint32_t)telegram->cob_id & UINT32_C(0x000007FF)) >> 0u);
+    return (uint16_t)((telegram->cob_id & UINT32_C(0x000007FF)) >> 0u);
 }
 
 /** Set COB-ID, bits 0 ... 10: identifier */
 static inline drivespec_status e94aycca_pdo_cob_id_entry_set_cob_id_identifier(e94aycca_pdo_cob_id_entry_t *telegram, uint16_t value)
 {
-    const uint32_t others = (uint32_t)telegram->cob_id & ~UINT32_C(0x000007FF);
+    const uint32_t others = telegram->cob_id & ~UINT32_C(0x000007FF);
 
     if ((value >> 11u) != 0u) {
         return DRIVESPEC_RANGE;
     }
-    telegram->cob_id = (uint32_t)(others | ((uint32_t)value << 0u));
+    telegram->cob_id = (others | ((uint32_t)value << 0u));
     return DRIVESPEC_OK;
 }
 
 /** COB-ID, bits 11 ... 29: extended */
 static inline uint32_t e94aycca_pdo_cob_id_entry_get_cob_id_extended(const e94aycca_pdo_cob_id_entry_t *telegram)
 {
-    return (uint32_t)(((uint32_t)telegram->cob_id & UINT32_C(0x3FFFF800)) >> 11u);
+    return ((telegram->cob_id & UINT32_C(0x3FFFF800)) >> 11u);
 }
 
 /** Set COB-ID, bits 11 ... 29: extended */
 static inline drivespec_status e94aycca_pdo_cob_id_entry_set_cob_id_extended(e94aycca_pdo_cob_id_entry_t *telegram, uint32_t value)
 {
-    const uint32_t others = (uint32_t)telegram->cob_id & ~UINT32_C(0x3FFFF800);
+    const uint32_t others = telegram->cob_id & ~UINT32_C(0x3FFFF800);
 
     if ((value >> 19u) != 0u) {
         return DRIVESPEC_RANGE;
     }
-    telegram->cob_id = (uint32_t)(others | ((uint32_t)value << 11u));
+    telegram->cob_id = (others | (value << 11u));
     return DRIVESPEC_OK;
 }
 
 /** COB-ID, bit 30: no_rtr */
 static inline uint8_t e94aycca_pdo_cob_id_entry_get_cob_id_no_rtr(const e94aycca_pdo_cob_id_entry_t *telegram)
 {
-    return (uint8_t)(((uint32_t)telegram->cob_id & UINT32_C(0x40000000)) >> 30u);
+    return (uint8_t)((telegram->cob_id & UINT32_C(0x40000000)) >> 30u);
 }
 
 /** Set COB-ID, bit 30: no_rtr */
 static inline drivespec_status e94aycca_pdo_cob_id_entry_set_cob_id_no_rtr(e94aycca_pdo_cob_id_entry_t *telegram, uint8_t value)
 {
-    const uint32_t others = (uint32_t)telegram->cob_id & ~UINT32_C(0x40000000);
+    const uint32_t others = telegram->cob_id & ~UINT32_C(0x40000000);
 
     if ((value >> 1u) != 0u) {
         return DRIVESPEC_RANGE;
     }
-    telegram->cob_id = (uint32_t)(others | ((uint32_t)value << 30u));
+    telegram->cob_id = (others | ((uint32_t)value << 30u));
     return DRIVESPEC_OK;
 }
 
 /** COB-ID, bit 31: inactive */
 static inline uint8_t e94aycca_pdo_cob_id_entry_get_cob_id_inactive(const e94aycca_pdo_cob_id_entry_t *telegram)
 {
-    return (uint8_t)(((uint32_t)telegram->cob_id & UINT32_C(0x80000000)) >> 31u);
+    return (uint8_t)((telegram->cob_id & UINT32_C(0x80000000)) >> 31u);
 }
 
 /** Set COB-ID, bit 31: inactive */
 static inline drivespec_status e94aycca_pdo_cob_id_entry_set_cob_id_inactive(e94aycca_pdo_cob_id_entry_t *telegram, uint8_t value)
 {
-    const uint32_t others = (uint32_t)telegram->cob_id & ~UINT32_C(0x80000000);
+    const uint32_t others = telegram->cob_id & ~UINT32_C(0x80000000);
 
     if ((value >> 1u) != 0u) {
         return DRIVESPEC_RANGE;
     }
-    telegram->cob_id = (uint32_t)(others | ((uint32_t)value << 31u));
+    telegram->cob_id = (others | ((uint32_t)value << 31u));
     return DRIVESPEC_OK;
 }
 
@@ -1626,72 +1627,72 @@ typedef struct e94aycca_sync_cob_id_entry_t {
 /** COB-ID SYNC message, bits 0 ... 10: identifier */
 static inline uint16_t e94aycca_sync_cob_id_entry_get_cob_id_identifier(const e94aycca_sync_cob_id_entry_t *telegram)
 {
-    return (uint16_t)(((uint32_t)telegram->cob_id & UINT32_C(0x000007FF)) >> 0u);
+    return (uint16_t)((telegram->cob_id & UINT32_C(0x000007FF)) >> 0u);
 }
 
 /** Set COB-ID SYNC message, bits 0 ... 10: identifier */
 static inline drivespec_status e94aycca_sync_cob_id_entry_set_cob_id_identifier(e94aycca_sync_cob_id_entry_t *telegram, uint16_t value)
 {
-    const uint32_t others = (uint32_t)telegram->cob_id & ~UINT32_C(0x000007FF);
+    const uint32_t others = telegram->cob_id & ~UINT32_C(0x000007FF);
 
     if ((value >> 11u) != 0u) {
         return DRIVESPEC_RANGE;
     }
-    telegram->cob_id = (uint32_t)(others | ((uint32_t)value << 0u));
+    telegram->cob_id = (others | ((uint32_t)value << 0u));
     return DRIVESPEC_OK;
 }
 
 /** COB-ID SYNC message, bits 11 ... 29: extended */
 static inline uint32_t e94aycca_sync_cob_id_entry_get_cob_id_extended(const e94aycca_sync_cob_id_entry_t *telegram)
 {
-    return (uint32_t)(((uint32_t)telegram->cob_id & UINT32_C(0x3FFFF800)) >> 11u);
+    return ((telegram->cob_id & UINT32_C(0x3FFFF800)) >> 11u);
 }
 
 /** Set COB-ID SYNC message, bits 11 ... 29: extended */
 static inline drivespec_status e94aycca_sync_cob_id_entry_set_cob_id_extended(e94aycca_sync_cob_id_entry_t *telegram, uint32_t value)
 {
-    const uint32_t others = (uint32_t)telegram->cob_id & ~UINT32_C(0x3FFFF800);
+    const uint32_t others = telegram->cob_id & ~UINT32_C(0x3FFFF800);
 
     if ((value >> 19u) != 0u) {
         return DRIVESPEC_RANGE;
     }
-    telegram->cob_id = (uint32_t)(others | ((uint32_t)value << 11u));
+    telegram->cob_id = (others | (value << 11u));
     return DRIVESPEC_OK;
 }
 
 /** COB-ID SYNC message, bit 30: producer */
 static inline uint8_t e94aycca_sync_cob_id_entry_get_cob_id_producer(const e94aycca_sync_cob_id_entry_t *telegram)
 {
-    return (uint8_t)(((uint32_t)telegram->cob_id & UINT32_C(0x40000000)) >> 30u);
+    return (uint8_t)((telegram->cob_id & UINT32_C(0x40000000)) >> 30u);
 }
 
 /** Set COB-ID SYNC message, bit 30: producer */
 static inline drivespec_status e94aycca_sync_cob_id_entry_set_cob_id_producer(e94aycca_sync_cob_id_entry_t *telegram, uint8_t value)
 {
-    const uint32_t others = (uint32_t)telegram->cob_id & ~UINT32_C(0x40000000);
+    const uint32_t others = telegram->cob_id & ~UINT32_C(0x40000000);
 
     if ((value >> 1u) != 0u) {
         return DRIVESPEC_RANGE;
     }
-    telegram->cob_id = (uint32_t)(others | ((uint32_t)value << 30u));
+    telegram->cob_id = (others | ((uint32_t)value << 30u));
     return DRIVESPEC_OK;
 }
 
 /** COB-ID SYNC message, bit 31: any */
 static inline uint8_t e94aycca_sync_cob_id_entry_get_cob_id_any(const e94aycca_sync_cob_id_entry_t *telegram)
 {
-    return (uint8_t)(((uint32_t)telegram->cob_id & UINT32_C(0x80000000)) >> 31u);
+    return (uint8_t)((telegram->cob_id & UINT32_C(0x80000000)) >> 31u);
 }
 
 /** Set COB-ID SYNC message, bit 31: any */
 static inline drivespec_status e94aycca_sync_cob_id_entry_set_cob_id_any(e94aycca_sync_cob_id_entry_t *telegram, uint8_t value)
 {
-    const uint32_t others = (uint32_t)telegram->cob_id & ~UINT32_C(0x80000000);
+    const uint32_t others = telegram->cob_id & ~UINT32_C(0x80000000);
 
     if ((value >> 1u) != 0u) {
         return DRIVESPEC_RANGE;
     }
-    telegram->cob_id = (uint32_t)(others | ((uint32_t)value << 31u));
+    telegram->cob_id = (others | ((uint32_t)value << 31u));
     return DRIVESPEC_OK;
 }
 

@@ -12,6 +12,8 @@
 
 #include "panel.h"
 
+#define E94AYCEN_LED_MS_COUNT 1u ///< LEDs of: MS and DE status displays
+
 /**
  * MS and DE status displays.
  * LEDs: MS (green).
@@ -19,30 +21,38 @@
  */
 typedef struct e94aycen_led_ms_row {
     char state[22u]; ///< What it means.
-    drivespec_pattern patterns[1u]; ///< Of each LED, in the order above.
+    drivespec_pattern patterns[E94AYCEN_LED_MS_COUNT]; ///< Of each LED, in the order above.
 } e94aycen_led_ms_row;
 
 static const e94aycen_led_ms_row e94aycen_led_ms_rows[] = {
     {"Supplied with voltage", { { "", 0u, 0u, DRIVESPEC_LIGHT_ON, 0u } }},
 };
 
-/** Row of what is seen of each LED, an exact one rather than one that agrees; NULL where there is none. */
-static inline const e94aycen_led_ms_row *e94aycen_led_ms_find(const drivespec_pattern *seen)
+/**
+ * Next row behind @p after (NULL: the first of all) that fits what is seen, NULL where there is none.
+ * @p seen holds one pattern for each LED, E94AYCEN_LED_MS_COUNT in all, in the order above.
+ */
+static inline const e94aycen_led_ms_row *e94aycen_led_ms_next(const drivespec_pattern seen[E94AYCEN_LED_MS_COUNT],
+                                                                const e94aycen_led_ms_row *after)
 {
-    for (unsigned exact = 2u; exact-- > 0u;) {
-        for (size_t i = 0u; i < sizeof e94aycen_led_ms_rows / sizeof e94aycen_led_ms_rows[0]; i++) {
-            size_t fitting = 0u;
-            while ((fitting < 1u) &&
-                   drivespec_pattern_fits(&e94aycen_led_ms_rows[i].patterns[fitting], &seen[fitting], exact != 0u)) {
-                fitting++;
-            }
-            if (fitting == 1u) {
-                return &e94aycen_led_ms_rows[i];
-            }
-        }
+    const e94aycen_led_ms_row *const end = e94aycen_led_ms_rows + sizeof e94aycen_led_ms_rows / sizeof e94aycen_led_ms_rows[0];
+    const e94aycen_led_ms_row *row = (after != NULL) ? after + 1 : e94aycen_led_ms_rows;
+
+    while ((row != end) && !drivespec_patterns_fit(row->patterns, seen, E94AYCEN_LED_MS_COUNT)) {
+        row++;
     }
-    return NULL;
+    return (row != end) ? row : NULL;
 }
+
+/** The only row that fits what is seen, as in e94aycen_led_ms_next; NULL where none or several fit. */
+static inline const e94aycen_led_ms_row *e94aycen_led_ms_find(const drivespec_pattern seen[E94AYCEN_LED_MS_COUNT])
+{
+    const e94aycen_led_ms_row *const row = e94aycen_led_ms_next(seen, NULL);
+
+    return ((row != NULL) && (e94aycen_led_ms_next(seen, row) == NULL)) ? row : NULL;
+}
+
+#define E94AYCEN_LED_DE_COUNT 1u ///< LEDs of: MS and DE status displays
 
 /**
  * MS and DE status displays.
@@ -51,30 +61,38 @@ static inline const e94aycen_led_ms_row *e94aycen_led_ms_find(const drivespec_pa
  */
 typedef struct e94aycen_led_de_row {
     char state[13u]; ///< What it means.
-    drivespec_pattern patterns[1u]; ///< Of each LED, in the order above.
+    drivespec_pattern patterns[E94AYCEN_LED_DE_COUNT]; ///< Of each LED, in the order above.
 } e94aycen_led_de_row;
 
 static const e94aycen_led_de_row e94aycen_led_de_rows[] = {
     {"Not accepted", { { "", 0u, 0u, DRIVESPEC_LIGHT_ON, 0u } }},
 };
 
-/** Row of what is seen of each LED, an exact one rather than one that agrees; NULL where there is none. */
-static inline const e94aycen_led_de_row *e94aycen_led_de_find(const drivespec_pattern *seen)
+/**
+ * Next row behind @p after (NULL: the first of all) that fits what is seen, NULL where there is none.
+ * @p seen holds one pattern for each LED, E94AYCEN_LED_DE_COUNT in all, in the order above.
+ */
+static inline const e94aycen_led_de_row *e94aycen_led_de_next(const drivespec_pattern seen[E94AYCEN_LED_DE_COUNT],
+                                                                const e94aycen_led_de_row *after)
 {
-    for (unsigned exact = 2u; exact-- > 0u;) {
-        for (size_t i = 0u; i < sizeof e94aycen_led_de_rows / sizeof e94aycen_led_de_rows[0]; i++) {
-            size_t fitting = 0u;
-            while ((fitting < 1u) &&
-                   drivespec_pattern_fits(&e94aycen_led_de_rows[i].patterns[fitting], &seen[fitting], exact != 0u)) {
-                fitting++;
-            }
-            if (fitting == 1u) {
-                return &e94aycen_led_de_rows[i];
-            }
-        }
+    const e94aycen_led_de_row *const end = e94aycen_led_de_rows + sizeof e94aycen_led_de_rows / sizeof e94aycen_led_de_rows[0];
+    const e94aycen_led_de_row *row = (after != NULL) ? after + 1 : e94aycen_led_de_rows;
+
+    while ((row != end) && !drivespec_patterns_fit(row->patterns, seen, E94AYCEN_LED_DE_COUNT)) {
+        row++;
     }
-    return NULL;
+    return (row != end) ? row : NULL;
 }
+
+/** The only row that fits what is seen, as in e94aycen_led_de_next; NULL where none or several fit. */
+static inline const e94aycen_led_de_row *e94aycen_led_de_find(const drivespec_pattern seen[E94AYCEN_LED_DE_COUNT])
+{
+    const e94aycen_led_de_row *const row = e94aycen_led_de_next(seen, NULL);
+
+    return ((row != NULL) && (e94aycen_led_de_next(seen, row) == NULL)) ? row : NULL;
+}
+
+#define E94AYCEN_LED_SOCKET_GREEN_COUNT 1u ///< LEDs of: Status display at X215 and X216
 
 /**
  * Status display at X215 and X216.
@@ -83,30 +101,38 @@ static inline const e94aycen_led_de_row *e94aycen_led_de_find(const drivespec_pa
  */
 typedef struct e94aycen_led_socket_green_row {
     char state[32u]; ///< What it means.
-    drivespec_pattern patterns[1u]; ///< Of each LED, in the order above.
+    drivespec_pattern patterns[E94AYCEN_LED_SOCKET_GREEN_COUNT]; ///< Of each LED, in the order above.
 } e94aycen_led_socket_green_row;
 
 static const e94aycen_led_socket_green_row e94aycen_led_socket_green_rows[] = {
     {"Ethernet connection established", { { "", 0u, 0u, DRIVESPEC_LIGHT_ON, 0u } }},
 };
 
-/** Row of what is seen of each LED, an exact one rather than one that agrees; NULL where there is none. */
-static inline const e94aycen_led_socket_green_row *e94aycen_led_socket_green_find(const drivespec_pattern *seen)
+/**
+ * Next row behind @p after (NULL: the first of all) that fits what is seen, NULL where there is none.
+ * @p seen holds one pattern for each LED, E94AYCEN_LED_SOCKET_GREEN_COUNT in all, in the order above.
+ */
+static inline const e94aycen_led_socket_green_row *e94aycen_led_socket_green_next(const drivespec_pattern seen[E94AYCEN_LED_SOCKET_GREEN_COUNT],
+                                                                const e94aycen_led_socket_green_row *after)
 {
-    for (unsigned exact = 2u; exact-- > 0u;) {
-        for (size_t i = 0u; i < sizeof e94aycen_led_socket_green_rows / sizeof e94aycen_led_socket_green_rows[0]; i++) {
-            size_t fitting = 0u;
-            while ((fitting < 1u) &&
-                   drivespec_pattern_fits(&e94aycen_led_socket_green_rows[i].patterns[fitting], &seen[fitting], exact != 0u)) {
-                fitting++;
-            }
-            if (fitting == 1u) {
-                return &e94aycen_led_socket_green_rows[i];
-            }
-        }
+    const e94aycen_led_socket_green_row *const end = e94aycen_led_socket_green_rows + sizeof e94aycen_led_socket_green_rows / sizeof e94aycen_led_socket_green_rows[0];
+    const e94aycen_led_socket_green_row *row = (after != NULL) ? after + 1 : e94aycen_led_socket_green_rows;
+
+    while ((row != end) && !drivespec_patterns_fit(row->patterns, seen, E94AYCEN_LED_SOCKET_GREEN_COUNT)) {
+        row++;
     }
-    return NULL;
+    return (row != end) ? row : NULL;
 }
+
+/** The only row that fits what is seen, as in e94aycen_led_socket_green_next; NULL where none or several fit. */
+static inline const e94aycen_led_socket_green_row *e94aycen_led_socket_green_find(const drivespec_pattern seen[E94AYCEN_LED_SOCKET_GREEN_COUNT])
+{
+    const e94aycen_led_socket_green_row *const row = e94aycen_led_socket_green_next(seen, NULL);
+
+    return ((row != NULL) && (e94aycen_led_socket_green_next(seen, row) == NULL)) ? row : NULL;
+}
+
+#define E94AYCEN_LED_SOCKET_YELLOW_COUNT 1u ///< LEDs of: Status display at X215 and X216
 
 /**
  * Status display at X215 and X216.
@@ -115,29 +141,35 @@ static inline const e94aycen_led_socket_green_row *e94aycen_led_socket_green_fin
  */
 typedef struct e94aycen_led_socket_yellow_row {
     char state[14u]; ///< What it means.
-    drivespec_pattern patterns[1u]; ///< Of each LED, in the order above.
+    drivespec_pattern patterns[E94AYCEN_LED_SOCKET_YELLOW_COUNT]; ///< Of each LED, in the order above.
 } e94aycen_led_socket_yellow_row;
 
 static const e94aycen_led_socket_yellow_row e94aycen_led_socket_yellow_rows[] = {
     {"Data exchange", { { "", 0u, 0u, DRIVESPEC_LIGHT_ON_OR_FLICKER, 0u } }},
 };
 
-/** Row of what is seen of each LED, an exact one rather than one that agrees; NULL where there is none. */
-static inline const e94aycen_led_socket_yellow_row *e94aycen_led_socket_yellow_find(const drivespec_pattern *seen)
+/**
+ * Next row behind @p after (NULL: the first of all) that fits what is seen, NULL where there is none.
+ * @p seen holds one pattern for each LED, E94AYCEN_LED_SOCKET_YELLOW_COUNT in all, in the order above.
+ */
+static inline const e94aycen_led_socket_yellow_row *e94aycen_led_socket_yellow_next(const drivespec_pattern seen[E94AYCEN_LED_SOCKET_YELLOW_COUNT],
+                                                                const e94aycen_led_socket_yellow_row *after)
 {
-    for (unsigned exact = 2u; exact-- > 0u;) {
-        for (size_t i = 0u; i < sizeof e94aycen_led_socket_yellow_rows / sizeof e94aycen_led_socket_yellow_rows[0]; i++) {
-            size_t fitting = 0u;
-            while ((fitting < 1u) &&
-                   drivespec_pattern_fits(&e94aycen_led_socket_yellow_rows[i].patterns[fitting], &seen[fitting], exact != 0u)) {
-                fitting++;
-            }
-            if (fitting == 1u) {
-                return &e94aycen_led_socket_yellow_rows[i];
-            }
-        }
+    const e94aycen_led_socket_yellow_row *const end = e94aycen_led_socket_yellow_rows + sizeof e94aycen_led_socket_yellow_rows / sizeof e94aycen_led_socket_yellow_rows[0];
+    const e94aycen_led_socket_yellow_row *row = (after != NULL) ? after + 1 : e94aycen_led_socket_yellow_rows;
+
+    while ((row != end) && !drivespec_patterns_fit(row->patterns, seen, E94AYCEN_LED_SOCKET_YELLOW_COUNT)) {
+        row++;
     }
-    return NULL;
+    return (row != end) ? row : NULL;
+}
+
+/** The only row that fits what is seen, as in e94aycen_led_socket_yellow_next; NULL where none or several fit. */
+static inline const e94aycen_led_socket_yellow_row *e94aycen_led_socket_yellow_find(const drivespec_pattern seen[E94AYCEN_LED_SOCKET_YELLOW_COUNT])
+{
+    const e94aycen_led_socket_yellow_row *const row = e94aycen_led_socket_yellow_next(seen, NULL);
+
+    return ((row != NULL) && (e94aycen_led_socket_yellow_next(seen, row) == NULL)) ? row : NULL;
 }
 
 #endif

@@ -279,8 +279,8 @@ static inline const drivespec_error *e94aycen_find_error(uint8_t kind, uint32_t 
 
     switch (kind) {
     case DRIVESPEC_ERROR_GCI:
-        hash = (uint32_t)(hash * UINT32_C(0x68B4D115)) >> 26u;
-        found = &e94aycen_errors[e94aycen_gci_error_places[hash]];
+        hash *= UINT32_C(0x68B4D115);
+        found = &e94aycen_errors[e94aycen_gci_error_places[hash >> 26u]];
         break;
     default:
         return NULL;

@@ -1904,6 +1904,9 @@ typedef enum e94aycpm_pnu963_sub0_opt {
 /**
  * @name 0x00C83100 Profibus: Lost connection to 9400 base device
  * The module has lost the connection to the drive.
+ * Cause: The supply voltage of the drive has failed.
+ * Cause: As printed, the network cable or its plug at X201; they lead to the master, not to the drive.
+ * Remedy: Check the supply of the drive, then cables and terminals.
  * Preset response: No response. Selectable: None.
  * EDS94AYCPM-EN-12.0, 13.2 p. 88.
  * Erratum error-base-device: printed (detail base): ... standard device; used: ... base device.
@@ -1922,6 +1925,8 @@ typedef enum e94aycpm_pnu963_sub0_opt {
 /**
  * @name 0x00C85531 Profibus: No memory access
  * The module could not get at its memory.
+ * Cause: Access to the memory failed.
+ * Remedy: Download the application anew, together with the module.
  * Preset response: Information. Selectable: Information.
  * EDS94AYCPM-EN-12.0, 13.2 p. 88.
  * @{
@@ -1932,6 +1937,8 @@ typedef enum e94aycpm_pnu963_sub0_opt {
 /**
  * @name 0x00C85532 Profibus: Read memory error
  * The module could not read its memory.
+ * Cause: A parameter could not be read.
+ * Remedy: Download the application anew, together with the module.
  * Preset response: Information. Selectable: Information.
  * EDS94AYCPM-EN-12.0, 13.2 p. 88.
  * @{
@@ -1942,6 +1949,8 @@ typedef enum e94aycpm_pnu963_sub0_opt {
 /**
  * @name 0x00C85533 Profibus: Write memory error
  * The module could not write its memory.
+ * Cause: A parameter could not be written.
+ * Remedy: Download the application anew, together with the module.
  * Preset response: Information. Selectable: Information.
  * EDS94AYCPM-EN-12.0, 13.2 p. 88.
  * @{
@@ -1952,6 +1961,8 @@ typedef enum e94aycpm_pnu963_sub0_opt {
 /**
  * @name 0x00C86010 Profibus: Restart after watchdogreset
  * The watchdog of the module has restarted it.
+ * Cause: The module is damaged.
+ * Remedy: If it happens again and again, ask the Lenze service.
  * Preset response: Fault. Selectable: Fault.
  * EDS94AYCPM-EN-12.0, 13.2 p. 88.
  * Erratum error-watchdogreset: printed (detail base): ... watchdog reset; used: ... watchdogreset.
@@ -1963,6 +1974,8 @@ typedef enum e94aycpm_pnu963_sub0_opt {
 /**
  * @name 0x00C86011 Profibus: Internal error
  * Internal error of the module.
+ * Cause: The module is damaged.
+ * Remedy: If it happens again and again, ask the Lenze service.
  * Preset response: Fault. Selectable: Fault.
  * EDS94AYCPM-EN-12.0, 13.2 p. 89.
  * @{
@@ -1973,6 +1986,8 @@ typedef enum e94aycpm_pnu963_sub0_opt {
 /**
  * @name 0x00C86100 Profibus: Internal error
  * Internal error of the module.
+ * Cause: Internal error.
+ * Remedy: If it happens again and again, ask the Lenze service.
  * Preset response: No response. Selectable: None.
  * EDS94AYCPM-EN-12.0, 13.2 p. 89.
  * @{
@@ -1983,6 +1998,8 @@ typedef enum e94aycpm_pnu963_sub0_opt {
 /**
  * @name 0x00C86101 Profibus: Internal error
  * Internal error after which the module starts anew.
+ * Cause: The module resets its software by itself and initialises again.
+ * Remedy: If it happens again and again, ask the Lenze service.
  * Preset response: Fault. Selectable: Fault.
  * EDS94AYCPM-EN-12.0, 13.2 p. 89.
  * @{
@@ -1993,6 +2010,9 @@ typedef enum e94aycpm_pnu963_sub0_opt {
 /**
  * @name 0x00C86110 Profibus: Internal mapping error
  * The PDO mapping cannot be used.
+ * Cause: A mapped object does not have the properties that mapping demands.
+ * Cause: More than 64 bytes are mapped.
+ * Remedy: Do the PDO mapping again.
  * Preset response: Warning locked. Selectable: Warning locked.
  * EDS94AYCPM-EN-12.0, 13.2 p. 89.
  * @{
@@ -2003,6 +2023,8 @@ typedef enum e94aycpm_pnu963_sub0_opt {
 /**
  * @name 0x00C8641F Profibus: Invalid parameter record
  * The module has no valid parameter set.
+ * Cause: No parameter set that is active could be loaded.
+ * Remedy: Download the application anew, together with the module.
  * Preset response: Fault. Selectable: Fault.
  * EDS94AYCPM-EN-12.0, 13.2 p. 89.
  * Erratum error-parameter-record: printed (detail base): ... parameter set; used: ... parameter record.
@@ -2014,6 +2036,8 @@ typedef enum e94aycpm_pnu963_sub0_opt {
 /**
  * @name 0x00C86420 Profibus: Error: Lenze setting loaded
  * The module works with the Lenze setting.
+ * Cause: The parameter set could not be accessed.
+ * Remedy: Download the application anew, together with the module.
  * Preset response: Fault. Selectable: Fault.
  * EDS94AYCPM-EN-12.0, 13.2 p. 89.
  * @{
@@ -2024,6 +2048,8 @@ typedef enum e94aycpm_pnu963_sub0_opt {
 /**
  * @name 0x00C88130 Profibus watchdog: Monitoring time elapsed
  * No telegram of the master came within the watchdog time.
+ * Cause: The communication with the PROFIBUS master is interrupted for good (chapter 11.1).
+ * Remedy: Check cables and terminals.
  * Preset response: No response. Selectable: None, Fault, Quick stop by trouble, Warning locked, Information.
  * Adjustable in C13880/1, C14880/1.
  * EDS94AYCPM-EN-12.0, 13.2 p. 90.
@@ -2042,6 +2068,9 @@ typedef enum e94aycpm_pnu963_sub0_opt {
 /**
  * @name 0x00C88131 Profibus: Data_Exchange state exited
  * The slave has left the Data_Exchange state.
+ * Cause: The exchange of data on the PROFIBUS has ended (chapter 11.1).
+ * Remedy: Check cables and terminals.
+ * Remedy: The master has to parameterise and configure the slave anew before data are exchanged again.
  * Preset response: No response. Selectable: None, Fault, Quick stop by trouble, Warning locked, Information.
  * Adjustable in C13880/1, C14880/1.
  * EDS94AYCPM-EN-12.0, 13.2 p. 90.
@@ -2060,6 +2089,8 @@ typedef enum e94aycpm_pnu963_sub0_opt {
 /**
  * @name 0x00C88132 Profibus watchdog: DP-V1 MSAC2 elapsed
  * The class 2 master has not been heard within the monitoring time.
+ * Cause: The communication with the class 2 master is interrupted for good (chapter 11.1).
+ * Remedy: Check cables and terminals.
  * Preset response: No response. Selectable: None, Fault, Quick stop by trouble, Warning locked, Information.
  * Adjustable in C13880/2, C14880/2.
  * EDS94AYCPM-EN-12.0, 13.2 p. 90.

@@ -269,6 +269,8 @@ static inline bool e94aycpm_switch_emf2133ib_compatibility_position(uint32_t val
     return false;
 }
 
+#define E94AYCPM_LED_MS_COUNT 1u ///< LEDs of: LED status display MS
+
 /**
  * LED status display MS.
  * LEDs: MS (green).
@@ -276,7 +278,7 @@ static inline bool e94aycpm_switch_emf2133ib_compatibility_position(uint32_t val
  */
 typedef struct e94aycpm_led_ms_row {
     char state[41u]; ///< What it means.
-    drivespec_pattern patterns[1u]; ///< Of each LED, in the order above.
+    drivespec_pattern patterns[E94AYCPM_LED_MS_COUNT]; ///< Of each LED, in the order above.
 } e94aycpm_led_ms_row;
 
 static const e94aycpm_led_ms_row e94aycpm_led_ms_rows[] = {
@@ -284,23 +286,31 @@ static const e94aycpm_led_ms_row e94aycpm_led_ms_rows[] = {
     {"Not yet connected to the standard device", { { "", 0u, 0u, DRIVESPEC_LIGHT_BLINK, 0u } }},
 };
 
-/** Row of what is seen of each LED, an exact one rather than one that agrees; NULL where there is none. */
-static inline const e94aycpm_led_ms_row *e94aycpm_led_ms_find(const drivespec_pattern *seen)
+/**
+ * Next row behind @p after (NULL: the first of all) that fits what is seen, NULL where there is none.
+ * @p seen holds one pattern for each LED, E94AYCPM_LED_MS_COUNT in all, in the order above.
+ */
+static inline const e94aycpm_led_ms_row *e94aycpm_led_ms_next(const drivespec_pattern seen[E94AYCPM_LED_MS_COUNT],
+                                                                const e94aycpm_led_ms_row *after)
 {
-    for (unsigned exact = 2u; exact-- > 0u;) {
-        for (size_t i = 0u; i < sizeof e94aycpm_led_ms_rows / sizeof e94aycpm_led_ms_rows[0]; i++) {
-            size_t fitting = 0u;
-            while ((fitting < 1u) &&
-                   drivespec_pattern_fits(&e94aycpm_led_ms_rows[i].patterns[fitting], &seen[fitting], exact != 0u)) {
-                fitting++;
-            }
-            if (fitting == 1u) {
-                return &e94aycpm_led_ms_rows[i];
-            }
-        }
+    const e94aycpm_led_ms_row *const end = e94aycpm_led_ms_rows + sizeof e94aycpm_led_ms_rows / sizeof e94aycpm_led_ms_rows[0];
+    const e94aycpm_led_ms_row *row = (after != NULL) ? after + 1 : e94aycpm_led_ms_rows;
+
+    while ((row != end) && !drivespec_patterns_fit(row->patterns, seen, E94AYCPM_LED_MS_COUNT)) {
+        row++;
     }
-    return NULL;
+    return (row != end) ? row : NULL;
 }
+
+/** The only row that fits what is seen, as in e94aycpm_led_ms_next; NULL where none or several fit. */
+static inline const e94aycpm_led_ms_row *e94aycpm_led_ms_find(const drivespec_pattern seen[E94AYCPM_LED_MS_COUNT])
+{
+    const e94aycpm_led_ms_row *const row = e94aycpm_led_ms_next(seen, NULL);
+
+    return ((row != NULL) && (e94aycpm_led_ms_next(seen, row) == NULL)) ? row : NULL;
+}
+
+#define E94AYCPM_LED_ME_COUNT 1u ///< LEDs of: LED status display ME
 
 /**
  * LED status display ME.
@@ -309,30 +319,38 @@ static inline const e94aycpm_led_ms_row *e94aycpm_led_ms_find(const drivespec_pa
  */
 typedef struct e94aycpm_led_me_row {
     char state[34u]; ///< What it means.
-    drivespec_pattern patterns[1u]; ///< Of each LED, in the order above.
+    drivespec_pattern patterns[E94AYCPM_LED_ME_COUNT]; ///< Of each LED, in the order above.
 } e94aycpm_led_me_row;
 
 static const e94aycpm_led_me_row e94aycpm_led_me_rows[] = {
     {"Error of the communication module", { { "", 0u, 0u, DRIVESPEC_LIGHT_ON, 0u } }},
 };
 
-/** Row of what is seen of each LED, an exact one rather than one that agrees; NULL where there is none. */
-static inline const e94aycpm_led_me_row *e94aycpm_led_me_find(const drivespec_pattern *seen)
+/**
+ * Next row behind @p after (NULL: the first of all) that fits what is seen, NULL where there is none.
+ * @p seen holds one pattern for each LED, E94AYCPM_LED_ME_COUNT in all, in the order above.
+ */
+static inline const e94aycpm_led_me_row *e94aycpm_led_me_next(const drivespec_pattern seen[E94AYCPM_LED_ME_COUNT],
+                                                                const e94aycpm_led_me_row *after)
 {
-    for (unsigned exact = 2u; exact-- > 0u;) {
-        for (size_t i = 0u; i < sizeof e94aycpm_led_me_rows / sizeof e94aycpm_led_me_rows[0]; i++) {
-            size_t fitting = 0u;
-            while ((fitting < 1u) &&
-                   drivespec_pattern_fits(&e94aycpm_led_me_rows[i].patterns[fitting], &seen[fitting], exact != 0u)) {
-                fitting++;
-            }
-            if (fitting == 1u) {
-                return &e94aycpm_led_me_rows[i];
-            }
-        }
+    const e94aycpm_led_me_row *const end = e94aycpm_led_me_rows + sizeof e94aycpm_led_me_rows / sizeof e94aycpm_led_me_rows[0];
+    const e94aycpm_led_me_row *row = (after != NULL) ? after + 1 : e94aycpm_led_me_rows;
+
+    while ((row != end) && !drivespec_patterns_fit(row->patterns, seen, E94AYCPM_LED_ME_COUNT)) {
+        row++;
     }
-    return NULL;
+    return (row != end) ? row : NULL;
 }
+
+/** The only row that fits what is seen, as in e94aycpm_led_me_next; NULL where none or several fit. */
+static inline const e94aycpm_led_me_row *e94aycpm_led_me_find(const drivespec_pattern seen[E94AYCPM_LED_ME_COUNT])
+{
+    const e94aycpm_led_me_row *const row = e94aycpm_led_me_next(seen, NULL);
+
+    return ((row != NULL) && (e94aycpm_led_me_next(seen, row) == NULL)) ? row : NULL;
+}
+
+#define E94AYCPM_LED_BS_COUNT 1u ///< LEDs of: LED status display BS
 
 /**
  * LED status display BS.
@@ -341,7 +359,7 @@ static inline const e94aycpm_led_me_row *e94aycpm_led_me_find(const drivespec_pa
  */
 typedef struct e94aycpm_led_bs_row {
     char state[43u]; ///< What it means.
-    drivespec_pattern patterns[1u]; ///< Of each LED, in the order above.
+    drivespec_pattern patterns[E94AYCPM_LED_BS_COUNT]; ///< Of each LED, in the order above.
 } e94aycpm_led_bs_row;
 
 static const e94aycpm_led_bs_row e94aycpm_led_bs_rows[] = {
@@ -349,23 +367,31 @@ static const e94aycpm_led_bs_row e94aycpm_led_bs_rows[] = {
     {"Not active on the fieldbus or initialising", { { "", 0u, 0u, DRIVESPEC_LIGHT_OFF, 0u } }},
 };
 
-/** Row of what is seen of each LED, an exact one rather than one that agrees; NULL where there is none. */
-static inline const e94aycpm_led_bs_row *e94aycpm_led_bs_find(const drivespec_pattern *seen)
+/**
+ * Next row behind @p after (NULL: the first of all) that fits what is seen, NULL where there is none.
+ * @p seen holds one pattern for each LED, E94AYCPM_LED_BS_COUNT in all, in the order above.
+ */
+static inline const e94aycpm_led_bs_row *e94aycpm_led_bs_next(const drivespec_pattern seen[E94AYCPM_LED_BS_COUNT],
+                                                                const e94aycpm_led_bs_row *after)
 {
-    for (unsigned exact = 2u; exact-- > 0u;) {
-        for (size_t i = 0u; i < sizeof e94aycpm_led_bs_rows / sizeof e94aycpm_led_bs_rows[0]; i++) {
-            size_t fitting = 0u;
-            while ((fitting < 1u) &&
-                   drivespec_pattern_fits(&e94aycpm_led_bs_rows[i].patterns[fitting], &seen[fitting], exact != 0u)) {
-                fitting++;
-            }
-            if (fitting == 1u) {
-                return &e94aycpm_led_bs_rows[i];
-            }
-        }
+    const e94aycpm_led_bs_row *const end = e94aycpm_led_bs_rows + sizeof e94aycpm_led_bs_rows / sizeof e94aycpm_led_bs_rows[0];
+    const e94aycpm_led_bs_row *row = (after != NULL) ? after + 1 : e94aycpm_led_bs_rows;
+
+    while ((row != end) && !drivespec_patterns_fit(row->patterns, seen, E94AYCPM_LED_BS_COUNT)) {
+        row++;
     }
-    return NULL;
+    return (row != end) ? row : NULL;
 }
+
+/** The only row that fits what is seen, as in e94aycpm_led_bs_next; NULL where none or several fit. */
+static inline const e94aycpm_led_bs_row *e94aycpm_led_bs_find(const drivespec_pattern seen[E94AYCPM_LED_BS_COUNT])
+{
+    const e94aycpm_led_bs_row *const row = e94aycpm_led_bs_next(seen, NULL);
+
+    return ((row != NULL) && (e94aycpm_led_bs_next(seen, row) == NULL)) ? row : NULL;
+}
+
+#define E94AYCPM_LED_BE_COUNT 1u ///< LEDs of: LED status display BE
 
 /**
  * LED status display BE.
@@ -374,30 +400,38 @@ static inline const e94aycpm_led_bs_row *e94aycpm_led_bs_find(const drivespec_pa
  */
 typedef struct e94aycpm_led_be_row {
     char state[16u]; ///< What it means.
-    drivespec_pattern patterns[1u]; ///< Of each LED, in the order above.
+    drivespec_pattern patterns[E94AYCPM_LED_BE_COUNT]; ///< Of each LED, in the order above.
 } e94aycpm_led_be_row;
 
 static const e94aycpm_led_be_row e94aycpm_led_be_rows[] = {
     {"Bus error/fault", { { "", 0u, 0u, DRIVESPEC_LIGHT_ON, 0u } }},
 };
 
-/** Row of what is seen of each LED, an exact one rather than one that agrees; NULL where there is none. */
-static inline const e94aycpm_led_be_row *e94aycpm_led_be_find(const drivespec_pattern *seen)
+/**
+ * Next row behind @p after (NULL: the first of all) that fits what is seen, NULL where there is none.
+ * @p seen holds one pattern for each LED, E94AYCPM_LED_BE_COUNT in all, in the order above.
+ */
+static inline const e94aycpm_led_be_row *e94aycpm_led_be_next(const drivespec_pattern seen[E94AYCPM_LED_BE_COUNT],
+                                                                const e94aycpm_led_be_row *after)
 {
-    for (unsigned exact = 2u; exact-- > 0u;) {
-        for (size_t i = 0u; i < sizeof e94aycpm_led_be_rows / sizeof e94aycpm_led_be_rows[0]; i++) {
-            size_t fitting = 0u;
-            while ((fitting < 1u) &&
-                   drivespec_pattern_fits(&e94aycpm_led_be_rows[i].patterns[fitting], &seen[fitting], exact != 0u)) {
-                fitting++;
-            }
-            if (fitting == 1u) {
-                return &e94aycpm_led_be_rows[i];
-            }
-        }
+    const e94aycpm_led_be_row *const end = e94aycpm_led_be_rows + sizeof e94aycpm_led_be_rows / sizeof e94aycpm_led_be_rows[0];
+    const e94aycpm_led_be_row *row = (after != NULL) ? after + 1 : e94aycpm_led_be_rows;
+
+    while ((row != end) && !drivespec_patterns_fit(row->patterns, seen, E94AYCPM_LED_BE_COUNT)) {
+        row++;
     }
-    return NULL;
+    return (row != end) ? row : NULL;
 }
+
+/** The only row that fits what is seen, as in e94aycpm_led_be_next; NULL where none or several fit. */
+static inline const e94aycpm_led_be_row *e94aycpm_led_be_find(const drivespec_pattern seen[E94AYCPM_LED_BE_COUNT])
+{
+    const e94aycpm_led_be_row *const row = e94aycpm_led_be_next(seen, NULL);
+
+    return ((row != NULL) && (e94aycpm_led_be_next(seen, row) == NULL)) ? row : NULL;
+}
+
+#define E94AYCPM_LED_DE_COUNT 1u ///< LEDs of: LED status display DE
 
 /**
  * LED status display DE.
@@ -406,29 +440,35 @@ static inline const e94aycpm_led_be_row *e94aycpm_led_be_find(const drivespec_pa
  */
 typedef struct e94aycpm_led_de_row {
     char state[43u]; ///< What it means.
-    drivespec_pattern patterns[1u]; ///< Of each LED, in the order above.
+    drivespec_pattern patterns[E94AYCPM_LED_DE_COUNT]; ///< Of each LED, in the order above.
 } e94aycpm_led_de_row;
 
 static const e94aycpm_led_de_row e94aycpm_led_de_rows[] = {
     {"Not accepted or standard device not active", { { "", 0u, 0u, DRIVESPEC_LIGHT_ON, 0u } }},
 };
 
-/** Row of what is seen of each LED, an exact one rather than one that agrees; NULL where there is none. */
-static inline const e94aycpm_led_de_row *e94aycpm_led_de_find(const drivespec_pattern *seen)
+/**
+ * Next row behind @p after (NULL: the first of all) that fits what is seen, NULL where there is none.
+ * @p seen holds one pattern for each LED, E94AYCPM_LED_DE_COUNT in all, in the order above.
+ */
+static inline const e94aycpm_led_de_row *e94aycpm_led_de_next(const drivespec_pattern seen[E94AYCPM_LED_DE_COUNT],
+                                                                const e94aycpm_led_de_row *after)
 {
-    for (unsigned exact = 2u; exact-- > 0u;) {
-        for (size_t i = 0u; i < sizeof e94aycpm_led_de_rows / sizeof e94aycpm_led_de_rows[0]; i++) {
-            size_t fitting = 0u;
-            while ((fitting < 1u) &&
-                   drivespec_pattern_fits(&e94aycpm_led_de_rows[i].patterns[fitting], &seen[fitting], exact != 0u)) {
-                fitting++;
-            }
-            if (fitting == 1u) {
-                return &e94aycpm_led_de_rows[i];
-            }
-        }
+    const e94aycpm_led_de_row *const end = e94aycpm_led_de_rows + sizeof e94aycpm_led_de_rows / sizeof e94aycpm_led_de_rows[0];
+    const e94aycpm_led_de_row *row = (after != NULL) ? after + 1 : e94aycpm_led_de_rows;
+
+    while ((row != end) && !drivespec_patterns_fit(row->patterns, seen, E94AYCPM_LED_DE_COUNT)) {
+        row++;
     }
-    return NULL;
+    return (row != end) ? row : NULL;
+}
+
+/** The only row that fits what is seen, as in e94aycpm_led_de_next; NULL where none or several fit. */
+static inline const e94aycpm_led_de_row *e94aycpm_led_de_find(const drivespec_pattern seen[E94AYCPM_LED_DE_COUNT])
+{
+    const e94aycpm_led_de_row *const row = e94aycpm_led_de_next(seen, NULL);
+
+    return ((row != NULL) && (e94aycpm_led_de_next(seen, row) == NULL)) ? row : NULL;
 }
 
 #endif

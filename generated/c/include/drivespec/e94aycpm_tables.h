@@ -404,12 +404,12 @@ static inline const drivespec_error *e94aycpm_find_error(uint8_t kind, uint32_t 
 
     switch (kind) {
     case DRIVESPEC_ERROR_DEVICE:
-        hash = (uint32_t)(hash * UINT32_C(0x489E4AE1)) >> 27u;
-        found = &e94aycpm_errors[e94aycpm_device_error_places[hash]];
+        hash *= UINT32_C(0x489E4AE1);
+        found = &e94aycpm_errors[e94aycpm_device_error_places[hash >> 27u]];
         break;
     case DRIVESPEC_ERROR_DPV0:
-        hash = (uint32_t)(hash * UINT32_C(0x2C15E5F1)) >> 27u;
-        found = &e94aycpm_errors[e94aycpm_dpv0_error_places[hash]];
+        hash *= UINT32_C(0x2C15E5F1);
+        found = &e94aycpm_errors[e94aycpm_dpv0_error_places[hash >> 27u]];
         break;
     case DRIVESPEC_ERROR_DPV1:
         hash = number - UINT32_C(0x00000000);

@@ -40,7 +40,7 @@ typedef struct drivespec_switch_row {
     bool has_value; ///< Whether the text is a number.
 } drivespec_switch_row;
 
-/** What an LED does, seen or printed; what is 0 or empty is not known. */
+/** What an LED does, seen or printed; what is 0, empty or DRIVESPEC_LIGHT_ANY is not known, and fits everything. */
 typedef struct drivespec_pattern {
     char colour[1u]; ///< Colour of an LED with several, else empty.
     uint16_t period_ms; ///< Milliseconds after which a blinking LED changes.
@@ -72,31 +72,42 @@ static inline uint32_t drivespec_switch_sum(const uint32_t *weights, size_t coun
     return sum;
 }
 
-/** Whether a light that is seen is the printed one, or one of those that the manual does not tell apart. */
-static inline bool drivespec_light_fits(uint8_t printed, uint8_t seen)
+/** Whether two numbers are equal, as far as both are known. */
+static inline bool drivespec_number_fits(uint16_t a, uint16_t b)
 {
-    return (printed == seen) || ((printed == DRIVESPEC_LIGHT_ON_OR_FLICKER) &&
-                                 ((seen == DRIVESPEC_LIGHT_ON) || (seen == DRIVESPEC_LIGHT_FLICKER)));
+    return (a == 0u) || (b == 0u) || (a == b);
 }
 
-/** Whether a pattern that is seen is exactly the printed one, or (@p exact false) agrees in all that both tell. */
-static inline bool drivespec_pattern_fits(const drivespec_pattern *printed, const drivespec_pattern *seen, bool exact)
+/** Whether a light may be another: they are the same, or one leaves open which of the two it is. */
+static inline bool drivespec_light_fits(uint8_t a, uint8_t b)
 {
-    if (printed->light == DRIVESPEC_LIGHT_ANY) {
+    const uint8_t other = (a == DRIVESPEC_LIGHT_ON_OR_FLICKER) ? b : a;
+
+    return (a == b) || (((a == DRIVESPEC_LIGHT_ON_OR_FLICKER) || (b == DRIVESPEC_LIGHT_ON_OR_FLICKER)) &&
+                        ((other == DRIVESPEC_LIGHT_ON) || (other == DRIVESPEC_LIGHT_FLICKER)));
+}
+
+/** Whether a pattern that is seen agrees with a printed one in all that is known of both. */
+static inline bool drivespec_pattern_fits(const drivespec_pattern *printed, const drivespec_pattern *seen)
+{
+    if ((printed->light == DRIVESPEC_LIGHT_ANY) || (seen->light == DRIVESPEC_LIGHT_ANY)) {
         return true;
     }
-    if (!drivespec_light_fits(printed->light, seen->light)) {
-        return false;
+    return drivespec_light_fits(printed->light, seen->light) &&
+           ((printed->colour[0] == '\0') || (seen->colour[0] == '\0') ||
+            drivespec_same_text(printed->colour, seen->colour)) &&
+           drivespec_number_fits(printed->period_ms, seen->period_ms) &&
+           drivespec_number_fits(printed->pause_ms, seen->pause_ms) &&
+           drivespec_number_fits(printed->flashes, seen->flashes);
+}
+
+/** Whether each of @p count patterns that are seen fits the printed one. */
+static inline bool drivespec_patterns_fit(const drivespec_pattern *printed, const drivespec_pattern *seen, size_t count)
+{
+    while ((count > 0u) && drivespec_pattern_fits(&printed[count - 1u], &seen[count - 1u])) {
+        count--;
     }
-    if (!drivespec_same_text(printed->colour, seen->colour) &&
-        (exact || ((printed->colour[0] != '\0') && (seen->colour[0] != '\0')))) {
-        return false;
-    }
-    return ((printed->period_ms == seen->period_ms) ||
-            (!exact && ((printed->period_ms == 0u) || (seen->period_ms == 0u)))) &&
-           ((printed->pause_ms == seen->pause_ms) ||
-            (!exact && ((printed->pause_ms == 0u) || (seen->pause_ms == 0u)))) &&
-           ((printed->flashes == seen->flashes) || (!exact && ((printed->flashes == 0u) || (seen->flashes == 0u))));
+    return count == 0u;
 }
 
 #endif

@@ -954,6 +954,7 @@ typedef enum servo931_i6061_sub0_opt {
  * @name 0x8120 Error 46
  * No node guarding request came within the monitoring time. 46 is the error number of the drive, 0x8120 the "CAN error
  * number"; the value of the error register that goes with it is lost.
+ * Cause: The master no longer sends node guarding requests, or sends them too seldom.
  * KHB-13.0002-EN-4.1-azmanual, 5.9.1 p. 51 (from another public document).
  * Erratum node-guarding-code: printed: 0x8120 (5.9.1, node guarding p. 51), 0x8120 CAN in error passive mode, 0x8130
  * life guard error or heartbeat error (Emergency error codes), 0x8130 life guarding error or heartbeat error (10.3,

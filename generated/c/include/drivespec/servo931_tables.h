@@ -97,8 +97,8 @@ static inline const drivespec_error *servo931_find_error(uint8_t kind, uint32_t 
         hash = number - UINT32_C(0x00008120);
         return (hash <= UINT32_C(0)) ? &servo931_errors[servo931_emergency_error_places[hash]] : NULL;
     case DRIVESPEC_ERROR_SDO_ABORT:
-        hash = (uint32_t)(hash * UINT32_C(0x248E067D)) >> 27u;
-        found = &servo931_errors[servo931_sdo_abort_error_places[hash]];
+        hash *= UINT32_C(0x248E067D);
+        found = &servo931_errors[servo931_sdo_abort_error_places[hash >> 27u]];
         break;
     default:
         return NULL;

@@ -47,6 +47,7 @@ typedef enum servo931_sdo_command_cs {
 /**
  * Parameter data telegram.
  * Reads or writes a parameter of up to four bytes; the answer to either has the same layout.
+ * Try servo931_sdo_error_decode first: its telegrams (Command code 0x80) decode as these, too.
  * SDO. KHB-13.0002-EN-4.1, 5.2.1 p. 19.
  */
 typedef struct servo931_sdo_t {
