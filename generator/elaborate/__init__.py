@@ -1,7 +1,7 @@
 """From loaded files to the model: notations read, runs and slots expanded, references resolved by name."""
 
 from generator.diagnostics import Problems
-from generator.elaborate.codes import Facts
+from generator.elaborate.codes import shared_codes
 from generator.elaborate.device import device, drive
 from generator.elaborate.manuals import manual, standards
 from generator.elaborate.pins import pins
@@ -17,10 +17,9 @@ def elaborate(spec: Spec, problems: Problems) -> Model:
     """
     manuals = {m.id: m for m in (manual(file) for file in spec.manuals)}
     common = standards(spec.standards, manuals)
-    drives = {name: drive(files["drive"], manuals) for name, files in spec.drives.items()}
+    drives = {name: drive(files["drive"]) for name, files in spec.drives.items()}
     shared = {
-        name: Facts(files["codes"].root, "codes", "code") if "codes" in files else None
-        for name, files in spec.drives.items()
+        name: shared_codes(files["codes"].root) if "codes" in files else None for name, files in spec.drives.items()
     }
     devices = [device(files, manuals, drives, shared, common) for _, files in sorted(spec.devices.items())]
     problems.stop()
@@ -34,4 +33,5 @@ def elaborate(spec: Spec, problems: Problems) -> Model:
         standard_objects=common.objects,
         cob_ids=common.cob_ids,
         pins=tuple(pins(spec.names)) if spec.names else (),
+        cites=tuple(dict.fromkeys(cited for file in spec.files for cited in file.cites)),
     )

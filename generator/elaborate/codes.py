@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from generator.diagnostics import suggestion
 from generator.elaborate.common import CODE_TYPES, bits, default, fields, fill, optional_text, options, origin, runs
 from generator.model import (
+    ANYWHERE,
     Access,
     AttributeRow,
     Cite,
@@ -42,12 +43,16 @@ class Facts:
 
 @dataclass(frozen=True, slots=True)
 class Frame:
-    """What a code needs to know of its device: slots (the first is the one transcribed), index base, drive."""
+    """What a code needs to know of its device: slots (the first is the one transcribed), index base, drive.
+
+    ``attributes``: where the table of attributes stands.
+    """
 
     slots: tuple[Slot, ...]
     index_base: int
     drive: str | None
     shared: Facts | None
+    attributes: Cite | None
 
 
 class _Merged:
@@ -60,6 +65,14 @@ class _Merged:
     def of(self, key: str) -> Node:
         """The entry that holds a key: the device's own where it does."""
         return self.own if self.drive is None or key in self.own else self.drive
+
+
+def shared_codes(root: Node) -> Facts:
+    """What a drive's codes.yaml says, for its modules to share."""
+    facts = Facts(root, "codes", "code")
+    for node in facts.nodes.values():
+        node.cite()  # devices give a citation of their own
+    return facts
 
 
 def codes(root: Node, frame: Frame, errata: "ErrataIndex") -> tuple[Code, ...]:
@@ -142,9 +155,12 @@ def _code(
     place = slot.name if slot else BASE
     name = str(entry.of("name").get("name"))
     cite = own.cite()
-    if "page" in printed:
-        chapter = slot.chapter if slot and slot.chapter else cite.chapter
-        cite = Cite(cite.manual, chapter, int(printed.get("page")))
+    chapter = slot.chapter if slot and slot.chapter else cite.chapter
+    page = printed.page("page", cite.manual, chapter)
+    if page is not None:
+        cite = Cite(cite.manual, chapter, page)
+    table = frame.attributes or Cite(cite.manual, ANYWHERE)
+    table_page = printed.page("table_page", table.manual, table.chapter)
     return Code(
         number=number,
         slot=slot.name if slot else None,
@@ -175,8 +191,8 @@ def _code(
         origin=origin(own),
         cite=cite,
         printed_name=str(printed.get("name", name)),
-        printed=tuple(_printed(printed, place, own)),
-        attributes=_attributes(printed),
+        printed=tuple(_printed(printed, place, cite.page, table_page)),
+        attributes=_attributes(printed, table_page),
         errata=errata.of(CodeRef(number)),
         where=own.at("code"),
     )
@@ -208,20 +224,17 @@ def _objects(node: Node) -> tuple[ObjectRef, ...]:
     return tuple(item for run in found for item in run.items if isinstance(item, ObjectRef))
 
 
-def _printed(printed: Node, place: str, own: Node) -> Iterator[PrintedIndex]:
+def _printed(printed: Node, place: str, page: int | None, table_page: int | None) -> Iterator[PrintedIndex]:
     pair = printed.read("index", lambda text: numbers(text, (10, 16)))
     if pair:
-        page = printed.get("page", own.cite().page)
         hexadecimal = pair[1].first if len(pair) > 1 else None
         yield PrintedIndex(f"chapter {place}", pair[0].first, hexadecimal, page, printed.at("index"))
     row = printed.read("table", attributes)
     if row:
-        yield PrintedIndex(
-            f"table {place}", row.decimal, row.hexadecimal, printed.get("table_page"), printed.at("table")
-        )
+        yield PrintedIndex(f"table {place}", row.decimal, row.hexadecimal, table_page, printed.at("table"))
 
 
-def _attributes(printed: Node) -> AttributeRow | None:
+def _attributes(printed: Node, page: int | None) -> AttributeRow | None:
     row = printed.read("table", attributes)
     if row is None:
         return None
@@ -232,7 +245,7 @@ def _attributes(printed: Node) -> AttributeRow | None:
         row.factor,
         row.access,
         optional_text(printed, "table_name"),
-        printed.get("table_page"),
+        page,
         printed.at("table"),
     )
 

@@ -34,7 +34,7 @@ NO_INDEX_BASE = 0
 """Index base of devices without codes."""
 
 
-def drive(file: SourceFile, manuals: Mapping[str, Manual]) -> Drive:
+def drive(file: SourceFile) -> Drive:
     """A base drive of spec/drives."""
     root = file.root
     _check_folder(root, "drive", file.stem)
@@ -48,12 +48,12 @@ def drive(file: SourceFile, manuals: Mapping[str, Manual]) -> Drive:
         if name not in layout.data:
             hint = suggestion(name, list(layout.data), "fields")
             number.problems.add("name-unknown", number.at("reported"), f"there is no field '{name}'", hint=hint)
-    result = Drive(
+    return Drive(
         id=file.stem,
         title=str(root.get("title")),
         manufacturer=str(root.get("manufacturer")),
         index_base=int(base.get("value")),
-        index_base_cites=tuple(file.cite(text, base.at("cites")) for text in base.texts("cites")),
+        index_base_cites=base.cites("cites"),
         responses=tuple(
             Response(
                 value=int(node.get("value")),
@@ -81,9 +81,6 @@ def drive(file: SourceFile, manuals: Mapping[str, Manual]) -> Drive:
         ),
         where=root.where,
     )
-    for cite in (result.error_fields_cite, *result.index_base_cites):
-        known_manual(cite.manual, root, "drive", manuals)
-    return result
 
 
 def device(
@@ -103,6 +100,7 @@ def device(
     if name not in manuals or ("drive" in root and base is None):
         return None
     slots = tuple(_slots(root))
+    attributes = root.cite("attributes") if "attributes" in root else None
     subjects = _subjects(files, slots)
     resolve = ledger.resolver(*subjects)
     entries = ledger.errata(files["errata"].root, manuals, resolve) if "errata" in files else ()
@@ -112,6 +110,7 @@ def device(
         base.index_base if base else NO_INDEX_BASE,
         base.id if base else None,
         shared.get(base.id) if base else None,
+        attributes,
     )
     codes = code_table.codes(files["codes"].root, frame, index) if "codes" in files else ()
     known = {CodeRef(c.number, s.number) for c in codes for s in c.subcodes} | {c.ref for c in codes}
@@ -137,7 +136,7 @@ def device(
         gsd=gsd_file.gsd(roots["gsd"], base, [entry.id for entry in entries], standards.telegrams)
         if "gsd" in roots
         else None,
-        attributes=root.cite("attributes") if "attributes" in root else None,
+        attributes=attributes,
         codes=codes,
         objects=object_table.objects(files["objects"].root, object_table.Frame(standards.objects, slots, index))
         if "objects" in files
@@ -192,7 +191,7 @@ def _slots(root: Node) -> list[Slot]:
                 last_code=last.number if isinstance(last, CodeRef) else 0,
                 code_offset=int(node.get("code_offset", 0)),
                 error_offset=int(node.get("error_offset", 0)),
-                chapter=optional_text(node, "chapter"),
+                chapter=node.chapter("chapter"),
             )
         )
     return found

@@ -63,7 +63,7 @@ def _place(node: Node, manuals: dict[str, Manual], manual: str) -> ErratumPlace:
     name = str(node.get("manual", manual))
     if "manual" in node:
         known_manual(name, node, "manual", manuals)
-    return ErratumPlace(str(node.get("where")), node.get("page"), name, str(node.get("printed")))
+    return ErratumPlace(str(node.get("where")), node.page("page", name), name, str(node.get("printed")))
 
 
 _VARIABLES = ("code", "index", "number")

@@ -86,9 +86,7 @@ def _cite(node: Node, place: int, count: int) -> Cite:
     cites = node.get("cite")
     if isinstance(cites, str):
         return node.cite()
-    if not _fits(node, "cite", cites, count):
-        return node.file.cite(str(cites[0]), node.at("cite"))
-    return node.file.cite(str(cites[place]), node.at("cite"))
+    return node.cites("cite")[place if _fits(node, "cite", cites, count) else 0]
 
 
 def _fits(node: Node, key: str, values: Sequence[object], count: int) -> bool:

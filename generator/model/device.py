@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from generator.model.citation import Cite, Manual, Origin, Where
+from generator.model.citation import Cite, Cited, Manual, Origin, Where
 from generator.model.code import Code
 from generator.model.erratum import Erratum
 from generator.model.error import ErrorEntry
@@ -152,7 +152,10 @@ class Device:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Model:
-    """Everything: ``release`` is (version, "yyyy-mm-dd") of the spec, the only date that artifacts carry."""
+    """Everything: ``date`` ("yyyy-mm-dd") is that of the ``version`` of the spec, the only one that artifacts carry.
+
+    ``cites``: every citation that was read.
+    """
 
     version: str
     date: str
@@ -162,3 +165,4 @@ class Model:
     standard_objects: tuple[StandardObject, ...]
     cob_ids: tuple[CobId, ...]
     pins: tuple[Pin, ...]
+    cites: tuple[Cited, ...]
