@@ -122,9 +122,13 @@ def mandatory(model: Model, device: Device) -> Iterator[Finding]:
 
 
 def code_references(model: Model, device: Device) -> Iterator[Finding]:
-    """Rules reference and slot-twin: codes that the overview names exist, one for each slot, the same code."""
+    """Rules reference and slot-twin: codes and abort codes exist; of a code of a slot its twins are named, too."""
     codes = {c.number: c for c in device.codes}
+    aborts = {error.number for error in device.errors if error.kind == "sdo_abort"}
     for _, sub, ref in _subs(device):
+        if sub.abort is not None and sub.abort not in aborts:
+            abort, message = f"0x{sub.abort:08X}", "the device lists no such abort code"
+            yield _finding("reference", ref, sub, "abort", abort, "an abort code of the device", message)
         for place, refs in sub.printed_codes:
             for code in refs:
                 yield from _unknown_code(ref, sub, place, code, device)

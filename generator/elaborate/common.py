@@ -5,7 +5,7 @@ from collections.abc import Iterator, Mapping
 
 from generator.diagnostics import suggestion
 from generator.model import Bit, BitField, DataType, Default, Manual, Option, Origin
-from generator.notation import node_relative
+from generator.notation import node_relative, value_range
 from generator.tree import Node
 
 CODE_TYPES = {
@@ -100,6 +100,16 @@ def runs(node: Node) -> Iterator[tuple[str, int, int]]:
             )
         previous = max(high, previous)
         yield key, low, high
+
+
+def run(node: Node, key: str) -> tuple[int, int] | None:
+    """First and last of the run of numbers below a key ("1 ... 8"); ``None`` where it is absent."""
+    found = node.read(key, value_range)
+    if found is None:
+        return None
+    if found.high < found.low:
+        node.problems.add("run-order", node.at(key), f"'{node.get(key)}' goes down", hint="runs ascend")
+    return int(found.low), int(found.high)
 
 
 def options(node: Node, key: str) -> tuple[Option, ...]:

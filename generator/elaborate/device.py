@@ -27,7 +27,6 @@ from generator.model import (
     Response,
     Slot,
 )
-from generator.notation import RefRun, references
 from generator.tree import Node, SourceFile
 
 NO_INDEX_BASE = 0
@@ -99,7 +98,9 @@ def device(
     base = _drive(root, drives)
     if name not in manuals or ("drive" in root and base is None):
         return None
-    slots = tuple(_slots(root))
+    slots = _slots(root)
+    if slots is None:
+        return None
     attributes = root.cite("attributes") if "attributes" in root else None
     subjects = _subjects(files, slots)
     resolve = ledger.resolver(*subjects)
@@ -178,23 +179,38 @@ def _drive(root: Node, drives: Mapping[str, Drive]) -> Drive | None:
     return drives.get(name)
 
 
-def _slots(root: Node) -> list[Slot]:
-    found = []
+def _slots(root: Node) -> tuple[Slot, ...] | None:
+    """Slots of a device, ``None`` where their runs of codes are wrong: whatever stands in them would be, too."""
+    found: list[Slot] = []
+    good = True
     for name, node in root.children("slots"):
-        runs = node.read("codes", references) or (RefRun(()),)
-        bounds = runs[0].open_run
-        first, last = (bounds[0], bounds[1]) if bounds else (CodeRef(0), CodeRef(0))
+        first, last = (int(end[1:]) for end in str(node.get("codes")).split(" ... "))
+        if last < first:
+            good = False
+            node.problems.add(
+                "run-order", node.at("codes"), "the run does not ascend", hint="write the lower code first"
+            )
+        for other in found:
+            if first <= other.last_code and other.first_code <= last:
+                good = False
+                node.problems.add(
+                    "run-order",
+                    node.at("codes"),
+                    f"the codes of {name} overlap those of {other.name}",
+                    compared=[(f"codes of {other.name}", f"C{other.first_code:05d} ... C{other.last_code:05d}")],
+                    hint="a code belongs to one slot",
+                )
         found.append(
             Slot(
                 name=name,
-                first_code=first.number if isinstance(first, CodeRef) else 0,
-                last_code=last.number if isinstance(last, CodeRef) else 0,
+                first_code=first,
+                last_code=last,
                 code_offset=int(node.get("code_offset", 0)),
                 error_offset=int(node.get("error_offset", 0)),
                 chapter=node.chapter("chapter"),
             )
         )
-    return found
+    return tuple(found) if good else None
 
 
 def _canopen(root: Node) -> CanOpenFacts | None:
@@ -208,6 +224,7 @@ def _canopen(root: Node) -> CanOpenFacts | None:
         node_address=int(code[1:]) if code else None,
         boot_up_master=bool(node.get("boot_up_master", False)),
         cite=node.cite(),
+        where=node.at("node_address"),
     )
 
 

@@ -102,6 +102,7 @@ class CanOpenFacts:
     node_address: int | None
     boot_up_master: bool
     cite: Cite
+    where: Where
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

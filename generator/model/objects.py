@@ -116,3 +116,7 @@ class CobId:
     objects: tuple[ObjectRef, ...]
     cite: Cite
     where: Where
+
+    def at(self, node: int) -> int:
+        """COB-ID of the node with that address."""
+        return self.base if self.broadcast else self.base + node
