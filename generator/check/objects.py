@@ -53,7 +53,7 @@ def values(model: Model, device: Device) -> Iterator[Finding]:
 
 
 def standard(model: Model, device: Device) -> Iterator[Finding]:
-    """Rules standard-object, standard-type and standard-access against CiA 301."""
+    """Rules standard-object, standard-type, standard-access and standard-default against CiA 301."""
     for entry, sub, ref in _subs(device):
         norm = next((s for s in model.standard_objects if s.first <= entry.index <= s.last), None)
         if norm is None or entry.kind != "canopen":
@@ -86,6 +86,9 @@ def standard(model: Model, device: Device) -> Iterator[Finding]:
         if sub.printed_access not in defined.access:
             message = f"the standard allows {' or '.join(defined.access)}, printed is {sub.printed_access}"
             yield _finding("standard-access", ref, sub, "access", sub.printed_access, defined.access[0], message)
+        if None not in (sub.default, defined.default) and sub.default != defined.default:
+            message = f"the standard presets {defined.default}, printed is {sub.default}"
+            yield _finding("standard-default", ref, sub, "default", str(sub.default), str(defined.default), message)
 
 
 def mandatory(model: Model, device: Device) -> Iterator[Finding]:

@@ -3,7 +3,7 @@
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
-from generator.elaborate.common import OBJECT_TYPES, known_manual, optional_text, runs, unique
+from generator.elaborate.common import OBJECT_TYPES, default, known_manual, optional_text, runs, unique
 from generator.model import Chapter, CobId, Manual, ObjectRef, StandardObject, StandardSubIndex
 from generator.model.gsd import DpTelegrams
 from generator.model.table import Connector, Contact
@@ -152,13 +152,15 @@ def _subindexes(subs: Node) -> list[StandardSubIndex]:
     for key, low, high in runs(subs):
         node = subs.child(key)
         assert node is not None
+        data_type = OBJECT_TYPES[str(node.get("type"))]
         found.append(
             StandardSubIndex(
                 first=low,
                 last=high,
                 name=str(node.get("name")),
-                data_type=OBJECT_TYPES[str(node.get("type"))],
+                data_type=data_type,
                 access=node.texts("access"),
+                default=default(node, "default", node.get("default"), data_type.is_number),
                 pdo_mapping=bool(node.get("pdo_mapping", False)),
                 mandatory=bool(node.get("mandatory", False)),
             )

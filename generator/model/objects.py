@@ -74,13 +74,17 @@ class DictionaryObject:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class StandardSubIndex:
-    """Sub-indexes ``first`` ... ``last`` as a standard defines them; ``access`` lists what it allows."""
+    """Sub-indexes ``first`` ... ``last`` as a standard defines them; ``access`` lists what it allows.
+
+    ``default``: what the standard presets, ``None`` where that is up to the device.
+    """
 
     first: int
     last: int
     name: str
     data_type: DataType
     access: tuple[str, ...]
+    default: Default | None
     pdo_mapping: bool
     mandatory: bool
 
