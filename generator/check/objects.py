@@ -55,8 +55,8 @@ def values(model: Model, device: Device) -> Iterator[Finding]:
 def standard(model: Model, device: Device) -> Iterator[Finding]:
     """Rules standard-object, standard-type, standard-access and standard-default against CiA 301."""
     for entry, sub, ref in _subs(device):
-        norm = next((s for s in model.standard_objects if s.first <= entry.index <= s.last), None)
-        if norm is None or entry.kind != "canopen":
+        norm = entry.standard
+        if norm is None:
             continue
         defined = norm.subindex(sub.number)
         if defined is None:
@@ -108,8 +108,8 @@ def mandatory(model: Model, device: Device) -> Iterator[Finding]:
                 where=device.where,
                 hint="add it to objects.yaml, with 'origin: standard' where the manual does not print it",
             )
-        for index, entry in known.items():
-            if entry.kind != "canopen" or not norm.first <= index <= norm.last:
+        for entry in device.objects:
+            if entry.standard is not norm:
                 continue
             for defined in norm.subindexes:
                 if defined.mandatory and entry.subindex(defined.first) is None:

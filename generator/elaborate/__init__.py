@@ -18,9 +18,7 @@ def elaborate(spec: Spec, problems: Problems) -> Model:
     manuals = {m.id: m for m in (manual(file) for file in spec.manuals)}
     common = standards(spec.standards, manuals)
     drives = {name: drive(files["drive"]) for name, files in spec.drives.items()}
-    shared = {
-        name: shared_codes(files["codes"].root) if "codes" in files else None for name, files in spec.drives.items()
-    }
+    shared = {name: shared_codes(files["codes"].root) for name, files in spec.drives.items() if "codes" in files}
     devices = [device(files, manuals, drives, shared, common) for _, files in sorted(spec.devices.items())]
     problems.stop()
     assert spec.release is not None
@@ -31,6 +29,7 @@ def elaborate(spec: Spec, problems: Problems) -> Model:
         drives=tuple(drives.values()),
         manuals=tuple(manuals.values()),
         standard_objects=common.objects,
+        node_addresses=common.node_addresses,
         cob_ids=common.cob_ids,
         pins=tuple(pins(spec.names)) if spec.names else (),
         cites=tuple(dict.fromkeys(cited for file in spec.files for cited in file.cites)),

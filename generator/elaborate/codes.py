@@ -4,7 +4,18 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
 from generator.diagnostics import suggestion
-from generator.elaborate.common import CODE_TYPES, bits, default, fields, fill, optional_text, options, origin, runs
+from generator.elaborate.common import (
+    CODE_TYPES,
+    bits,
+    default,
+    fields,
+    fill,
+    optional_text,
+    options,
+    origin,
+    runs,
+    unique,
+)
 from generator.model import (
     ANYWHERE,
     Access,
@@ -26,21 +37,6 @@ BASE = "base"
 """Name under which ``printed`` holds what stands once, outside any slot."""
 
 
-class Facts:
-    """Entries of a file by the value of a key, the first of each; a second one is noted."""
-
-    def __init__(self, root: Node, key: str, by: str) -> None:
-        """Index the list below ``key``."""
-        self.nodes: dict[str, Node] = {}
-        for node in root.items(key):
-            name = str(node.get(by))
-            if name in self.nodes:
-                first = self.nodes[name].at(by)
-                node.problems.add("duplicate", node.at(by), f"'{name}' is written twice", other=("first", first))
-            else:
-                self.nodes[name] = node
-
-
 @dataclass(frozen=True, slots=True)
 class Frame:
     """What a code needs to know of its device: slots (the first is the one transcribed), index base, drive.
@@ -51,7 +47,7 @@ class Frame:
     slots: tuple[Slot, ...]
     index_base: int
     drive: str | None
-    shared: Facts | None
+    shared: Mapping[str, Node]
     attributes: Cite | None
 
 
@@ -67,17 +63,17 @@ class _Merged:
         return self.own if self.drive is None or key in self.own else self.drive
 
 
-def shared_codes(root: Node) -> Facts:
-    """What a drive's codes.yaml says, for its modules to share."""
-    facts = Facts(root, "codes", "code")
-    for node in facts.nodes.values():
+def shared_codes(root: Node) -> dict[str, Node]:
+    """Entries of a drive's codes.yaml by code, for its modules to share."""
+    nodes = unique(root, "codes", "code")
+    for node in nodes:
         node.cite()  # devices give a citation of their own
-    return facts
+    return {str(node.get("code")): node for node in nodes}
 
 
 def codes(root: Node, frame: Frame, errata: "ErrataIndex") -> tuple[Code, ...]:
     """Codes of a device's codes.yaml in every slot, by number."""
-    found = [code for node in Facts(root, "codes", "code").nodes.values() for code in _expand(node, frame, errata)]
+    found = [code for node in unique(root, "codes", "code") for code in _expand(node, frame, errata)]
     return tuple(sorted(found, key=lambda code: code.number))
 
 
@@ -113,13 +109,12 @@ def _expand(node: Node, frame: Frame, errata: "ErrataIndex") -> Iterator[Code]:
 def _merge(node: Node, frame: Frame) -> _Merged | None:
     if not node.get("shared", False):
         return _Merged(node, None)
-    known = frame.shared.nodes if frame.shared else {}
     name = str(node.get("code"))
-    if name not in known:
-        hint = suggestion(name, list(known), "shared codes")
+    if name not in frame.shared:
+        hint = suggestion(name, list(frame.shared), "shared codes")
         node.problems.add("shared-unknown", node.at("code"), f"no drive shares a code {name}", hint=hint)
         return None
-    drive = known[name]
+    drive = frame.shared[name]
     for key, value in node.data.items():
         if key not in ("code", "shared", "cite", "printed") and drive.get(key) == value:
             node.problems.add(

@@ -41,15 +41,14 @@ _PLACEHOLDER = re.compile(r"\{([a-z]+)(\+1)?\}")
 _BRACES = re.compile(r"\{[^}]*\}?|\}")
 
 
-def unique(root: Node, key: str) -> list[Node]:
-    """The entries below a key; an id that stands twice is noted."""
+def unique(root: Node, key: str, by: str = "id") -> list[Node]:
+    """The entries below a key, which differ ``by`` a key of theirs; one that stands twice is noted."""
     seen: dict[str, Node] = {}
     for node in root.items(key):
-        name = str(node.get("id"))
+        name = str(node.get(by))
         if name in seen:
-            node.problems.add(
-                "duplicate", node.at("id"), f"'{name}' is written twice", other=("first", seen[name].at("id"))
-            )
+            first = seen[name].at(by)
+            node.problems.add("duplicate", node.at(by), f"'{name}' is written twice", other=("first", first))
         seen.setdefault(name, node)
     return list(seen.values())
 

@@ -86,7 +86,7 @@ def device(
     files: Mapping[str, SourceFile],
     manuals: dict[str, Manual],
     drives: Mapping[str, Drive],
-    shared: Mapping[str, code_table.Facts | None],
+    shared: Mapping[str, Mapping[str, Node]],
     standards: Standards,
 ) -> Device | None:
     """A device of spec/devices, ``None`` where its manual or drive is unknown."""
@@ -110,7 +110,7 @@ def device(
         slots,
         base.index_base if base else NO_INDEX_BASE,
         base.id if base else None,
-        shared.get(base.id) if base else None,
+        shared.get(base.id, {}) if base else {},
         attributes,
     )
     codes = code_table.codes(files["codes"].root, frame, index) if "codes" in files else ()
@@ -133,7 +133,7 @@ def device(
         software_version=optional_text(version, "software") if version else None,
         cite=root.cite(),
         slots=slots,
-        canopen=_canopen(root),
+        canopen=_canopen(root, standards.node_addresses),
         gsd=gsd_file.gsd(roots["gsd"], base, [entry.id for entry in entries], standards.telegrams)
         if "gsd" in roots
         else None,
@@ -213,15 +213,19 @@ def _slots(root: Node) -> tuple[Slot, ...] | None:
     return tuple(found) if good else None
 
 
-def _canopen(root: Node) -> CanOpenFacts | None:
+def _canopen(root: Node, addresses: range) -> CanOpenFacts | None:
     node = root.child("canopen")
     if node is None:
         return None
+    if not addresses:
+        message = "no standard says which addresses a CANopen node can have"
+        root.problems.add("key-missing", node.where, message, hint="add 'node_addresses:' to a file of spec/standards")
     code = node.get("node_address")
     return CanOpenFacts(
         baud_rates=tuple(node.get("baud_rates")),
         granularity=int(node.get("granularity")),
         node_address=int(code[1:]) if code else None,
+        node_addresses=addresses,
         boot_up_master=bool(node.get("boot_up_master", False)),
         cite=node.cite(),
         where=node.at("node_address"),

@@ -94,12 +94,14 @@ class Drive:
 class CanOpenFacts:
     """What [DeviceInfo] of an EDS needs and no object says.
 
-    ``baud_rates`` in kbit/s, ``granularity`` of PDO mapping in bits, ``node_address``: number of its code.
+    ``baud_rates`` in kbit/s, ``granularity`` of PDO mapping in bits, ``node_address``: number of its code,
+    ``node_addresses``: those that the standard allows.
     """
 
     baud_rates: tuple[int, ...]
     granularity: int
     node_address: int | None
+    node_addresses: range
     boot_up_master: bool
     cite: Cite
     where: Where
@@ -155,7 +157,7 @@ class Device:
 class Model:
     """Everything: ``date`` ("yyyy-mm-dd") is that of the ``version`` of the spec, the only one that artifacts carry.
 
-    ``cites``: every citation that was read.
+    ``node_addresses``: those that a node on a CANopen bus can have.  ``cites``: every citation that was read.
     """
 
     version: str
@@ -164,6 +166,7 @@ class Model:
     drives: tuple[Drive, ...]
     manuals: tuple[Manual, ...]
     standard_objects: tuple[StandardObject, ...]
+    node_addresses: range
     cob_ids: tuple[CobId, ...]
     pins: tuple[Pin, ...]
     cites: tuple[Cited, ...]

@@ -43,13 +43,14 @@ class SubIndex:
 class DictionaryObject:
     """An object: ``kind`` "canopen" (``index`` 0x0000 ... 0xFFFF) or "profidrive" (``index`` is the PNU).
 
-    ``object_type`` is "VAR", "ARRAY" or "RECORD".
+    ``object_type`` is "VAR", "ARRAY" or "RECORD".  ``standard``: the objects of the standard that it is one of.
     """
 
     kind: str
     index: int
     name: str
     object_type: str
+    standard: "StandardObject | None"
     subindexes: tuple[SubIndex, ...]
     description: str
     origin: Origin
