@@ -93,7 +93,7 @@ def _parser() -> argparse.ArgumentParser:
     dcf.add_argument(
         "--product", help="base drive as in the names of the EDS files; may be left out where there is one"
     )
-    dcf.add_argument("--node", required=True, metavar="ID", help="node-ID, 1 ... 127")
+    dcf.add_argument("--node", required=True, metavar="ID", help="node-ID")
     dcf.add_argument("--baud", required=True, metavar="RATE", help="bit rate in kbit/s")
     dcf.add_argument(
         "--set",

@@ -18,7 +18,6 @@ from generator.mistakes import Mistake, MistakesError
 from generator.model import Code, CodeRef, DataType, Model, ObjectRef
 from generator.naming import words
 
-_NODES = range(1, 128)
 _HEXADECIMAL = re.compile(r"0[xX][0-9A-Fa-f]+")
 _DECIMAL = re.compile(r"[+-]?[0-9]+(\.[0-9]+)?")
 _LONGEST = 1000
@@ -47,7 +46,7 @@ def files(model: Model, request: Request) -> Mapping[str, Output]:
     """
     mistakes: list[Mistake] = []
     dictionary = _dictionary(model, request)
-    node = _node(request.node, mistakes)
+    node = _node(request.node, dictionary.facts.node_addresses, mistakes)
     bit_rate = _bit_rate(request.bit_rate, dictionary, mistakes)
     values: dict[tuple[int, int], int | str] = {}
     for argument in request.settings:
@@ -95,12 +94,12 @@ def _choice(option: str, typed: str | None, names: Sequence[str], what: str) -> 
     raise MistakesError([Mistake(option=option, argument=typed, message=message, hint=hint)])
 
 
-def _node(typed: str, mistakes: list[Mistake]) -> int:
+def _node(typed: str, nodes: range, mistakes: list[Mistake]) -> int:
     number = _whole(typed)
-    if number in _NODES:
+    if number in nodes:
         return number
     message = f"'{typed}' is no node-ID"
-    legal = f"{_NODES[0]} ... {_NODES[-1]}"
+    legal = f"{nodes[0]} ... {nodes[-1]}"
     mistakes.append(Mistake(option="--node", argument=typed, message=message, compared=(("legal", legal),)))
     return 0
 
@@ -305,6 +304,10 @@ class _Setting:
         address = self._dictionary.facts.node_address
         if not isinstance(reference, CodeRef) or address is None:
             return
-        if self._code(reference).twin_of == address and self._node in _NODES and wire != self._node:
+        if (
+            self._code(reference).twin_of == address
+            and self._node in self._dictionary.facts.node_addresses
+            and wire != self._node
+        ):
             compared = [("--set", str(wire)), ("--node", str(self._node))]
             raise self._mistake(f"{reference} is the node address", compared=compared, hint="leave it out")

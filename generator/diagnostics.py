@@ -102,7 +102,7 @@ def suggestion(name: str, candidates: Sequence[str], what: str) -> str:
     if close:
         return "did you mean " + " or ".join(f"'{c}'" for c in close) + "?"
     if not candidates:
-        return f"there is no {what} at all"
+        return f"there are no {what} at all"
     shown = sorted(set(candidates))
     more = f" and {len(shown) - 12} more" if len(shown) > 12 else ""
     return f"known {what}: " + ", ".join(shown[:12]) + more

@@ -56,6 +56,7 @@ RULES: dict[str, str] = {
     "standard-object": "Objects have the sub-indexes that the standard defines.",
     "standard-type": "Data types are those of the standard.",
     "standard-access": "Accesses are among those that the standard allows.",
+    "standard-default": "Defaults are those that the standard presets.",
     "connector-pins": "The assignment of a connector names each of its contacts once.",
     "telegram-bytes": "The printed bytes of an example are those that its values encode to.",
     "telegram-values": "An example decodes by its layout to its values, and encodes again.",

@@ -1,5 +1,6 @@
 """The files of a spec folder: which there are, of which kind, read and validated."""
 
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -34,6 +35,13 @@ class Spec:
     standards: list[SourceFile] = field(default_factory=list)
     drives: dict[str, dict[str, SourceFile]] = field(default_factory=dict)
     devices: dict[str, dict[str, SourceFile]] = field(default_factory=dict)
+
+    @property
+    def files(self) -> Iterator[SourceFile]:
+        """Every file with facts."""
+        yield from (*self.manuals, *self.standards)
+        for folder in (*self.drives.values(), *self.devices.values()):
+            yield from folder.values()
 
 
 def inputs(folder: Path) -> list[Path]:

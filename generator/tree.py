@@ -5,7 +5,7 @@ from typing import Any, TypeVar
 
 from generator.diagnostics import Problems
 from generator.load import Map, Seq
-from generator.model import Cite, Where
+from generator.model import ANYWHERE, Cite, Cited, Where
 from generator.notation import NotationError, citation
 
 T = TypeVar("T")
@@ -85,11 +85,35 @@ class Node:
         """The citation below a key, with the manual of the file's head where it names none."""
         return self.file.cite(str(self.data.get(key, "")), self.at(key))
 
+    def cites(self, key: str) -> tuple[Cite, ...]:
+        """The citations of the list below a key."""
+        found = []
+        for i, text in enumerate(self.data[key]):
+            line, column = self.data[key].items_at[i]
+            found.append(self.file.cite(str(text), Where(self.file.name, line, column, f"{self.path}/{key}/{i}")))
+        return tuple(found)
+
+    def chapter(self, key: str) -> str | None:
+        """The chapter below a key, one of the manual of the file's head; ``None`` where it is absent."""
+        if key not in self.data:
+            return None
+        cite = Cite(self.file.manual, str(self.data[key]))
+        self.file.cites.append(Cited(cite, self.at(key), page_alone=False))
+        return cite.chapter
+
+    def page(self, key: str, manual: str, chapter: str = ANYWHERE) -> int | None:
+        """The page below a key, one of a chapter that is named elsewhere; ``None`` where it is absent."""
+        if key not in self.data:
+            return None
+        page = int(self.data[key])
+        self.file.cites.append(Cited(Cite(manual, chapter, page), self.at(key), page_alone=True))
+        return page
+
 
 class SourceFile:
-    """One loaded file of spec: its name in messages and the manual of its head."""
+    """One loaded file of spec: its name in messages, the manual of its head, and the citations read so far."""
 
-    __slots__ = ("data", "kind", "manual", "name", "problems", "stem")
+    __slots__ = ("cites", "data", "kind", "manual", "name", "problems", "stem")
 
     def __init__(self, name: str, kind: str, stem: str, data: Map, problems: Problems) -> None:
         """Wrap ``data``; ``kind`` is the schema it fits, ``stem`` the name that the file or its folder gives it."""
@@ -99,6 +123,7 @@ class SourceFile:
         self.data = data
         self.problems = problems
         self.manual = str(data.get("manual", ""))
+        self.cites: list[Cited] = []
 
     @property
     def root(self) -> Node:
@@ -118,6 +143,8 @@ class SourceFile:
         """A citation of this file."""
         parts = self.read(citation, text, where)
         if parts is None:
-            return Cite(self.manual, "", None)
+            return Cite(self.manual, ANYWHERE, None)
         manual, chapter, page = parts
-        return Cite(manual or self.manual, chapter, page)
+        cite = Cite(manual or self.manual, chapter, page)
+        self.cites.append(Cited(cite, where, page_alone=False))
+        return cite

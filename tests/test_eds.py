@@ -712,7 +712,9 @@ def test_subcodes_with_a_gap_are_a_record(model: Model, base: Device, code: Code
 
 
 def _object(base: Device, index: int, object_type: str, *subs: SubIndex, name: str = "Sample") -> DictionaryObject:
-    return replace(base.objects[0], index=index, name=name, object_type=object_type, subindexes=subs, errata=())
+    return replace(
+        base.objects[0], index=index, name=name, object_type=object_type, standard=None, subindexes=subs, errata=()
+    )
 
 
 def test_standard_array_of_two_types_is_a_record(model: Model, base: Device) -> None:

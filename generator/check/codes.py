@@ -140,7 +140,8 @@ def bits(model: Model, device: Device) -> Iterator[Finding]:
 
 
 def identifiers(model: Model, device: Device) -> Iterator[Finding]:
-    """Rule cob-id: a printed default that follows the node address is base plus default node address."""
+    """Rules reference and cob-id: a default that follows the node address is base plus default node address."""
+    yield from _unknown_address(device)
     for code in device.codes:
         node = _node_address(device, code.slot)
         for sub in code.subcodes:
@@ -157,6 +158,22 @@ def identifiers(model: Model, device: Device) -> Iterator[Finding]:
                     message=f"with node address {node} the identifier is 0x{expected:X}, not 0x{sub.default:X}",
                     where=sub.where,
                 )
+
+
+def _unknown_address(device: Device) -> Iterator[Finding]:
+    facts = device.canopen
+    if facts is None or facts.node_address is None or any(c.twin_of == facts.node_address for c in device.codes):
+        return
+    name = str(CodeRef(facts.node_address))
+    yield Finding(
+        rule="reference",
+        subject=f"device:{device.id}",
+        place="node_address",
+        printed=name,
+        expected="a code of the first slot",
+        message=f"the device has no code {name} to hold the node address",
+        where=facts.where,
+    )
 
 
 def _node_address(device: Device, slot: str | None) -> int | None:

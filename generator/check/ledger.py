@@ -172,6 +172,7 @@ def _subjects(device: Device) -> set[Subject]:
         ("formula", (f.id for f in device.formulas)),
         ("layout", (x.id for x in device.layouts)),
         ("telegram", (e.id for e in device.examples)),
+        ("service", (s.id for s in device.services)),
     ]
     things = {f"{kind}:{name}" for kind, names in named for name in names} | {f"device:{device.id}"}
     return {c.ref for c in device.codes} | {o.ref for o in device.objects} | {e.ref for e in device.errors} | things

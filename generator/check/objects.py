@@ -53,10 +53,10 @@ def values(model: Model, device: Device) -> Iterator[Finding]:
 
 
 def standard(model: Model, device: Device) -> Iterator[Finding]:
-    """Rules standard-object, standard-type and standard-access against CiA 301."""
+    """Rules standard-object, standard-type, standard-access and standard-default against CiA 301."""
     for entry, sub, ref in _subs(device):
-        norm = next((s for s in model.standard_objects if s.first <= entry.index <= s.last), None)
-        if norm is None or entry.kind != "canopen":
+        norm = entry.standard
+        if norm is None:
             continue
         defined = norm.subindex(sub.number)
         if defined is None:
@@ -86,6 +86,9 @@ def standard(model: Model, device: Device) -> Iterator[Finding]:
         if sub.printed_access not in defined.access:
             message = f"the standard allows {' or '.join(defined.access)}, printed is {sub.printed_access}"
             yield _finding("standard-access", ref, sub, "access", sub.printed_access, defined.access[0], message)
+        if None not in (sub.default, defined.default) and sub.default != defined.default:
+            message = f"the standard presets {defined.default}, printed is {sub.default}"
+            yield _finding("standard-default", ref, sub, "default", str(sub.default), str(defined.default), message)
 
 
 def mandatory(model: Model, device: Device) -> Iterator[Finding]:
@@ -105,8 +108,8 @@ def mandatory(model: Model, device: Device) -> Iterator[Finding]:
                 where=device.where,
                 hint="add it to objects.yaml, with 'origin: standard' where the manual does not print it",
             )
-        for index, entry in known.items():
-            if entry.kind != "canopen" or not norm.first <= index <= norm.last:
+        for entry in device.objects:
+            if entry.standard is not norm:
                 continue
             for defined in norm.subindexes:
                 if defined.mandatory and entry.subindex(defined.first) is None:
@@ -122,9 +125,13 @@ def mandatory(model: Model, device: Device) -> Iterator[Finding]:
 
 
 def code_references(model: Model, device: Device) -> Iterator[Finding]:
-    """Rules reference and slot-twin: codes that the overview names exist, one for each slot, the same code."""
+    """Rules reference and slot-twin: codes and abort codes exist; of a code of a slot its twins are named, too."""
     codes = {c.number: c for c in device.codes}
+    aborts = {error.number for error in device.errors if error.kind == "sdo_abort"}
     for _, sub, ref in _subs(device):
+        if sub.abort is not None and sub.abort not in aborts:
+            abort, message = f"0x{sub.abort:08X}", "the device lists no such abort code"
+            yield _finding("reference", ref, sub, "abort", abort, "an abort code of the device", message)
         for place, refs in sub.printed_codes:
             for code in refs:
                 yield from _unknown_code(ref, sub, place, code, device)

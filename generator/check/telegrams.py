@@ -98,12 +98,11 @@ def _finding(rule: str, example: Example, printed: str, expected: str, message: 
 
 
 def identifiers(model: Model, device: Device) -> Iterator[Finding]:
-    """Rule cob-id: the identifier of an example is a base of the predefined connection set plus its node address."""
-    bases = {c.base for c in model.cob_ids}
+    """Rule cob-id: the identifier of an example is one that the predefined connection set gives its node."""
     for example in device.examples:
         if example.identifier is None or example.node is None:
             continue
-        if example.identifier - example.node not in bases:
+        if example.identifier not in [cob_id.at(example.node) for cob_id in model.cob_ids]:
             yield Finding(
                 rule="cob-id",
                 subject=f"telegram:{example.id}",
@@ -116,7 +115,19 @@ def identifiers(model: Model, device: Device) -> Iterator[Finding]:
 
 
 def services(model: Model, device: Device) -> Iterator[Finding]:
-    """Rule telegram-service: an example whose layout a service uses is a telegram that a service builds."""
+    """Rules reference and telegram-service: services tell errors that are listed, and build the examples."""
+    kinds = {error.kind for error in device.errors}
+    for service in device.services:
+        if service.errors is not None and service.errors not in kinds:
+            yield Finding(
+                rule="reference",
+                subject=f"service:{service.id}",
+                place="errors",
+                printed=service.errors,
+                expected=", ".join(sorted(kinds)) or "none",
+                message=f"the device has no errors of kind '{service.errors}'",
+                where=service.where,
+            )
     layouts = {layout.id: layout for layout in device.layouts}
     for example in device.examples:
         used = [

@@ -1,7 +1,7 @@
 """From loaded files to the model: notations read, runs and slots expanded, references resolved by name."""
 
 from generator.diagnostics import Problems
-from generator.elaborate.codes import Facts
+from generator.elaborate.codes import shared_codes
 from generator.elaborate.device import device, drive
 from generator.elaborate.manuals import manual, standards
 from generator.elaborate.pins import pins
@@ -17,11 +17,8 @@ def elaborate(spec: Spec, problems: Problems) -> Model:
     """
     manuals = {m.id: m for m in (manual(file) for file in spec.manuals)}
     common = standards(spec.standards, manuals)
-    drives = {name: drive(files["drive"], manuals) for name, files in spec.drives.items()}
-    shared = {
-        name: Facts(files["codes"].root, "codes", "code") if "codes" in files else None
-        for name, files in spec.drives.items()
-    }
+    drives = {name: drive(files["drive"]) for name, files in spec.drives.items()}
+    shared = {name: shared_codes(files["codes"].root) for name, files in spec.drives.items() if "codes" in files}
     devices = [device(files, manuals, drives, shared, common) for _, files in sorted(spec.devices.items())]
     problems.stop()
     assert spec.release is not None
@@ -32,6 +29,8 @@ def elaborate(spec: Spec, problems: Problems) -> Model:
         drives=tuple(drives.values()),
         manuals=tuple(manuals.values()),
         standard_objects=common.objects,
+        node_addresses=common.node_addresses,
         cob_ids=common.cob_ids,
         pins=tuple(pins(spec.names)) if spec.names else (),
+        cites=tuple(dict.fromkeys(cited for file in spec.files for cited in file.cites)),
     )

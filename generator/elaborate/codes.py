@@ -4,8 +4,20 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
 from generator.diagnostics import suggestion
-from generator.elaborate.common import CODE_TYPES, bits, default, fields, fill, optional_text, options, origin, runs
+from generator.elaborate.common import (
+    CODE_TYPES,
+    bits,
+    default,
+    fields,
+    fill,
+    optional_text,
+    options,
+    origin,
+    runs,
+    unique,
+)
 from generator.model import (
+    ANYWHERE,
     Access,
     AttributeRow,
     Cite,
@@ -25,29 +37,18 @@ BASE = "base"
 """Name under which ``printed`` holds what stands once, outside any slot."""
 
 
-class Facts:
-    """Entries of a file by the value of a key, the first of each; a second one is noted."""
-
-    def __init__(self, root: Node, key: str, by: str) -> None:
-        """Index the list below ``key``."""
-        self.nodes: dict[str, Node] = {}
-        for node in root.items(key):
-            name = str(node.get(by))
-            if name in self.nodes:
-                first = self.nodes[name].at(by)
-                node.problems.add("duplicate", node.at(by), f"'{name}' is written twice", other=("first", first))
-            else:
-                self.nodes[name] = node
-
-
 @dataclass(frozen=True, slots=True)
 class Frame:
-    """What a code needs to know of its device: slots (the first is the one transcribed), index base, drive."""
+    """What a code needs to know of its device: slots (the first is the one transcribed), index base, drive.
+
+    ``attributes``: where the table of attributes stands.
+    """
 
     slots: tuple[Slot, ...]
     index_base: int
     drive: str | None
-    shared: Facts | None
+    shared: Mapping[str, Node]
+    attributes: Cite | None
 
 
 class _Merged:
@@ -62,9 +63,17 @@ class _Merged:
         return self.own if self.drive is None or key in self.own else self.drive
 
 
+def shared_codes(root: Node) -> dict[str, Node]:
+    """Entries of a drive's codes.yaml by code, for its modules to share."""
+    nodes = unique(root, "codes", "code")
+    for node in nodes:
+        node.cite()  # devices give a citation of their own
+    return {str(node.get("code")): node for node in nodes}
+
+
 def codes(root: Node, frame: Frame, errata: "ErrataIndex") -> tuple[Code, ...]:
     """Codes of a device's codes.yaml in every slot, by number."""
-    found = [code for node in Facts(root, "codes", "code").nodes.values() for code in _expand(node, frame, errata)]
+    found = [code for node in unique(root, "codes", "code") for code in _expand(node, frame, errata)]
     return tuple(sorted(found, key=lambda code: code.number))
 
 
@@ -100,13 +109,12 @@ def _expand(node: Node, frame: Frame, errata: "ErrataIndex") -> Iterator[Code]:
 def _merge(node: Node, frame: Frame) -> _Merged | None:
     if not node.get("shared", False):
         return _Merged(node, None)
-    known = frame.shared.nodes if frame.shared else {}
     name = str(node.get("code"))
-    if name not in known:
-        hint = suggestion(name, list(known), "shared codes")
+    if name not in frame.shared:
+        hint = suggestion(name, list(frame.shared), "shared codes")
         node.problems.add("shared-unknown", node.at("code"), f"no drive shares a code {name}", hint=hint)
         return None
-    drive = known[name]
+    drive = frame.shared[name]
     for key, value in node.data.items():
         if key not in ("code", "shared", "cite", "printed") and drive.get(key) == value:
             node.problems.add(
@@ -142,9 +150,12 @@ def _code(
     place = slot.name if slot else BASE
     name = str(entry.of("name").get("name"))
     cite = own.cite()
-    if "page" in printed:
-        chapter = slot.chapter if slot and slot.chapter else cite.chapter
-        cite = Cite(cite.manual, chapter, int(printed.get("page")))
+    chapter = slot.chapter if slot and slot.chapter else cite.chapter
+    page = printed.page("page", cite.manual, chapter)
+    if page is not None:
+        cite = Cite(cite.manual, chapter, page)
+    table = frame.attributes or Cite(cite.manual, ANYWHERE)
+    table_page = printed.page("table_page", table.manual, table.chapter)
     return Code(
         number=number,
         slot=slot.name if slot else None,
@@ -175,8 +186,8 @@ def _code(
         origin=origin(own),
         cite=cite,
         printed_name=str(printed.get("name", name)),
-        printed=tuple(_printed(printed, place, own)),
-        attributes=_attributes(printed),
+        printed=tuple(_printed(printed, place, cite.page, table_page)),
+        attributes=_attributes(printed, table_page),
         errata=errata.of(CodeRef(number)),
         where=own.at("code"),
     )
@@ -208,20 +219,17 @@ def _objects(node: Node) -> tuple[ObjectRef, ...]:
     return tuple(item for run in found for item in run.items if isinstance(item, ObjectRef))
 
 
-def _printed(printed: Node, place: str, own: Node) -> Iterator[PrintedIndex]:
+def _printed(printed: Node, place: str, page: int | None, table_page: int | None) -> Iterator[PrintedIndex]:
     pair = printed.read("index", lambda text: numbers(text, (10, 16)))
     if pair:
-        page = printed.get("page", own.cite().page)
         hexadecimal = pair[1].first if len(pair) > 1 else None
         yield PrintedIndex(f"chapter {place}", pair[0].first, hexadecimal, page, printed.at("index"))
     row = printed.read("table", attributes)
     if row:
-        yield PrintedIndex(
-            f"table {place}", row.decimal, row.hexadecimal, printed.get("table_page"), printed.at("table")
-        )
+        yield PrintedIndex(f"table {place}", row.decimal, row.hexadecimal, table_page, printed.at("table"))
 
 
-def _attributes(printed: Node) -> AttributeRow | None:
+def _attributes(printed: Node, page: int | None) -> AttributeRow | None:
     row = printed.read("table", attributes)
     if row is None:
         return None
@@ -232,7 +240,7 @@ def _attributes(printed: Node) -> AttributeRow | None:
         row.factor,
         row.access,
         optional_text(printed, "table_name"),
-        printed.get("table_page"),
+        page,
         printed.at("table"),
     )
 

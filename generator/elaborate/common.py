@@ -5,7 +5,7 @@ from collections.abc import Iterator, Mapping
 
 from generator.diagnostics import suggestion
 from generator.model import Bit, BitField, DataType, Default, Manual, Option, Origin
-from generator.notation import node_relative
+from generator.notation import node_relative, value_range
 from generator.tree import Node
 
 CODE_TYPES = {
@@ -41,15 +41,14 @@ _PLACEHOLDER = re.compile(r"\{([a-z]+)(\+1)?\}")
 _BRACES = re.compile(r"\{[^}]*\}?|\}")
 
 
-def unique(root: Node, key: str) -> list[Node]:
-    """The entries below a key; an id that stands twice is noted."""
+def unique(root: Node, key: str, by: str = "id") -> list[Node]:
+    """The entries below a key, which differ ``by`` a key of theirs; one that stands twice is noted."""
     seen: dict[str, Node] = {}
     for node in root.items(key):
-        name = str(node.get("id"))
+        name = str(node.get(by))
         if name in seen:
-            node.problems.add(
-                "duplicate", node.at("id"), f"'{name}' is written twice", other=("first", seen[name].at("id"))
-            )
+            first = seen[name].at(by)
+            node.problems.add("duplicate", node.at(by), f"'{name}' is written twice", other=("first", first))
         seen.setdefault(name, node)
     return list(seen.values())
 
@@ -100,6 +99,16 @@ def runs(node: Node) -> Iterator[tuple[str, int, int]]:
             )
         previous = max(high, previous)
         yield key, low, high
+
+
+def run(node: Node, key: str) -> tuple[int, int] | None:
+    """First and last of the run of numbers below a key ("1 ... 8"); ``None`` where it is absent."""
+    found = node.read(key, value_range)
+    if found is None:
+        return None
+    if found.high < found.low:
+        node.problems.add("run-order", node.at(key), f"'{node.get(key)}' goes down", hint="runs ascend")
+    return int(found.low), int(found.high)
 
 
 def options(node: Node, key: str) -> tuple[Option, ...]:

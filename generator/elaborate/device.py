@@ -27,14 +27,13 @@ from generator.model import (
     Response,
     Slot,
 )
-from generator.notation import RefRun, references
 from generator.tree import Node, SourceFile
 
 NO_INDEX_BASE = 0
 """Index base of devices without codes."""
 
 
-def drive(file: SourceFile, manuals: Mapping[str, Manual]) -> Drive:
+def drive(file: SourceFile) -> Drive:
     """A base drive of spec/drives."""
     root = file.root
     _check_folder(root, "drive", file.stem)
@@ -48,12 +47,12 @@ def drive(file: SourceFile, manuals: Mapping[str, Manual]) -> Drive:
         if name not in layout.data:
             hint = suggestion(name, list(layout.data), "fields")
             number.problems.add("name-unknown", number.at("reported"), f"there is no field '{name}'", hint=hint)
-    result = Drive(
+    return Drive(
         id=file.stem,
         title=str(root.get("title")),
         manufacturer=str(root.get("manufacturer")),
         index_base=int(base.get("value")),
-        index_base_cites=tuple(file.cite(text, base.at("cites")) for text in base.texts("cites")),
+        index_base_cites=base.cites("cites"),
         responses=tuple(
             Response(
                 value=int(node.get("value")),
@@ -81,16 +80,13 @@ def drive(file: SourceFile, manuals: Mapping[str, Manual]) -> Drive:
         ),
         where=root.where,
     )
-    for cite in (result.error_fields_cite, *result.index_base_cites):
-        known_manual(cite.manual, root, "drive", manuals)
-    return result
 
 
 def device(
     files: Mapping[str, SourceFile],
     manuals: dict[str, Manual],
     drives: Mapping[str, Drive],
-    shared: Mapping[str, code_table.Facts | None],
+    shared: Mapping[str, Mapping[str, Node]],
     standards: Standards,
 ) -> Device | None:
     """A device of spec/devices, ``None`` where its manual or drive is unknown."""
@@ -102,7 +98,10 @@ def device(
     base = _drive(root, drives)
     if name not in manuals or ("drive" in root and base is None):
         return None
-    slots = tuple(_slots(root))
+    slots = _slots(root)
+    if slots is None:
+        return None
+    attributes = root.cite("attributes") if "attributes" in root else None
     subjects = _subjects(files, slots)
     resolve = ledger.resolver(*subjects)
     entries = ledger.errata(files["errata"].root, manuals, resolve) if "errata" in files else ()
@@ -111,7 +110,8 @@ def device(
         slots,
         base.index_base if base else NO_INDEX_BASE,
         base.id if base else None,
-        shared.get(base.id) if base else None,
+        shared.get(base.id, {}) if base else {},
+        attributes,
     )
     codes = code_table.codes(files["codes"].root, frame, index) if "codes" in files else ()
     known = {CodeRef(c.number, s.number) for c in codes for s in c.subcodes} | {c.ref for c in codes}
@@ -133,11 +133,11 @@ def device(
         software_version=optional_text(version, "software") if version else None,
         cite=root.cite(),
         slots=slots,
-        canopen=_canopen(root),
+        canopen=_canopen(root, standards.node_addresses),
         gsd=gsd_file.gsd(roots["gsd"], base, [entry.id for entry in entries], standards.telegrams)
         if "gsd" in roots
         else None,
-        attributes=root.cite("attributes") if "attributes" in root else None,
+        attributes=attributes,
         codes=codes,
         objects=object_table.objects(files["objects"].root, object_table.Frame(standards.objects, slots, index))
         if "objects" in files
@@ -179,36 +179,56 @@ def _drive(root: Node, drives: Mapping[str, Drive]) -> Drive | None:
     return drives.get(name)
 
 
-def _slots(root: Node) -> list[Slot]:
-    found = []
+def _slots(root: Node) -> tuple[Slot, ...] | None:
+    """Slots of a device, ``None`` where their runs of codes are wrong: whatever stands in them would be, too."""
+    found: list[Slot] = []
+    good = True
     for name, node in root.children("slots"):
-        runs = node.read("codes", references) or (RefRun(()),)
-        bounds = runs[0].open_run
-        first, last = (bounds[0], bounds[1]) if bounds else (CodeRef(0), CodeRef(0))
+        first, last = (int(end[1:]) for end in str(node.get("codes")).split(" ... "))
+        if last < first:
+            good = False
+            node.problems.add(
+                "run-order", node.at("codes"), "the run does not ascend", hint="write the lower code first"
+            )
+        for other in found:
+            if first <= other.last_code and other.first_code <= last:
+                good = False
+                node.problems.add(
+                    "run-order",
+                    node.at("codes"),
+                    f"the codes of {name} overlap those of {other.name}",
+                    compared=[(f"codes of {other.name}", f"C{other.first_code:05d} ... C{other.last_code:05d}")],
+                    hint="a code belongs to one slot",
+                )
         found.append(
             Slot(
                 name=name,
-                first_code=first.number if isinstance(first, CodeRef) else 0,
-                last_code=last.number if isinstance(last, CodeRef) else 0,
+                first_code=first,
+                last_code=last,
                 code_offset=int(node.get("code_offset", 0)),
                 error_offset=int(node.get("error_offset", 0)),
-                chapter=optional_text(node, "chapter"),
+                chapter=node.chapter("chapter"),
             )
         )
-    return found
+    return tuple(found) if good else None
 
 
-def _canopen(root: Node) -> CanOpenFacts | None:
+def _canopen(root: Node, addresses: range) -> CanOpenFacts | None:
     node = root.child("canopen")
     if node is None:
         return None
+    if not addresses:
+        message = "no standard says which addresses a CANopen node can have"
+        root.problems.add("key-missing", node.where, message, hint="add 'node_addresses:' to a file of spec/standards")
     code = node.get("node_address")
     return CanOpenFacts(
         baud_rates=tuple(node.get("baud_rates")),
         granularity=int(node.get("granularity")),
         node_address=int(code[1:]) if code else None,
+        node_addresses=addresses,
         boot_up_master=bool(node.get("boot_up_master", False)),
         cite=node.cite(),
+        where=node.at("node_address"),
     )
 
 

@@ -3,7 +3,7 @@
 from collections.abc import Callable, Iterable, Sequence
 
 from generator.diagnostics import suggestion
-from generator.elaborate.common import known_manual
+from generator.elaborate.common import known_manual, unique
 from generator.model import CodeRef, Erratum, ErratumPlace, ErrorRef, Manual, ObjectRef
 from generator.model.erratum import Subject
 from generator.notation import RefRun, formula, references
@@ -16,20 +16,7 @@ Resolver = Callable[[RefRun], Iterable[Subject]]
 
 def errata(root: Node, manuals: dict[str, Manual], resolve: Resolver) -> tuple[Erratum, ...]:
     """Entries of a device's errata.yaml, in the order of the file."""
-    seen: dict[str, Node] = {}
-    found = []
-    for node in root.items("errata"):
-        name = str(node.get("id"))
-        if name in seen:
-            node.problems.add(
-                "duplicate",
-                node.at("id"),
-                f"the erratum '{name}' is written twice",
-                other=("first", seen[name].at("id")),
-            )
-        seen.setdefault(name, node)
-        found.append(_erratum(node, name, manuals, resolve))
-    return tuple(found)
+    return tuple(_erratum(node, str(node.get("id")), manuals, resolve) for node in unique(root, "errata"))
 
 
 def _erratum(node: Node, name: str, manuals: dict[str, Manual], resolve: Resolver) -> Erratum:
@@ -63,7 +50,7 @@ def _place(node: Node, manuals: dict[str, Manual], manual: str) -> ErratumPlace:
     name = str(node.get("manual", manual))
     if "manual" in node:
         known_manual(name, node, "manual", manuals)
-    return ErratumPlace(str(node.get("where")), node.get("page"), name, str(node.get("printed")))
+    return ErratumPlace(str(node.get("where")), node.page("page", name), name, str(node.get("printed")))
 
 
 _VARIABLES = ("code", "index", "number")

@@ -115,7 +115,7 @@ def _entry(node: Node, slot: Slot | None, first: int, last: int, printed: Node |
 
 def _cite(node: Node, printed: Node | None) -> Cite:
     cite = node.cite()
-    page = printed.get("detail_page") if printed else None
+    page = printed.page("detail_page", cite.manual, cite.chapter) if printed else None
     return Cite(cite.manual, cite.chapter, page) if page is not None else cite
 
 
@@ -127,7 +127,7 @@ def _codes(node: Node, key: str, slot: Slot | None) -> tuple[CodeRef, ...]:
 
 
 def _printed(printed: Node, place: str) -> Iterator[PrintedNumber]:
-    for key, page in (("overview", printed.get("page")), ("detail", printed.get("detail_page"))):
+    for key, page in (("overview", printed.page("page", printed.file.manual)), ("detail", printed.get("detail_page"))):
         for run in printed.read(key, numbers) or ():
             yield PrintedNumber(f"{key} {place}", run.base, run.first, run.last, page, printed.at(key))
 

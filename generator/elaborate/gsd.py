@@ -3,7 +3,7 @@
 from collections.abc import Iterator, Mapping, Sequence
 
 from generator.diagnostics import suggestion
-from generator.elaborate.common import fill, origin, unique
+from generator.elaborate.common import fill, origin, run, unique
 from generator.load import Map
 from generator.model import Drive, Gsd
 from generator.model.gsd import (
@@ -149,12 +149,7 @@ def _words(node: Node) -> tuple[int, int]:
     words = node.get("words")
     if isinstance(words, int):
         return words, words
-    run = node.read("words", value_range)
-    assert run is not None
-    low, high = int(run.low), int(run.high)
-    if high < low:
-        node.problems.add("run-order", node.at("words"), f"'{words}' goes down", hint="runs ascend")
-    return low, high
+    return run(node, "words") or (0, 0)
 
 
 def _wording(node: Node, key: str, values: Mapping[str, int | str]) -> Wording:

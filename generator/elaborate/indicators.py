@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 from generator.diagnostics import suggestion
 from generator.elaborate.codes import ErrataIndex
-from generator.elaborate.common import origin, unique
+from generator.elaborate.common import origin, run, unique
 from generator.model import (
     CodeCounts,
     CodeRef,
@@ -23,7 +23,7 @@ from generator.model import (
 )
 from generator.model.indicator import Light
 from generator.model.table import Assignment, Connector
-from generator.notation import formula, pattern, references, value_range
+from generator.notation import formula, pattern, references
 from generator.tree import Node
 
 
@@ -82,13 +82,12 @@ def _switch(node: Node, errata: ErrataIndex) -> SwitchGroup:
     if weights and len(weights) != len(labels):
         node.problems.add("list-length", node.at("weights"), f"{len(weights)} weights for {len(labels)} switches")
         weights = ()
-    valid = node.read("valid", value_range)
     return SwitchGroup(
         id=str(node.get("id")),
         name=str(node.get("name")),
         labels=labels,
         weights=weights,
-        valid=(int(valid.low), int(valid.high)) if valid else None,
+        valid=run(node, "valid"),
         unit=str(node.get("unit", "")),
         sets=_codes(node, "sets"),
         block=_block(node.child("block")),
@@ -176,8 +175,8 @@ def _assignment(
     for key, legal in named.items():
         name = str(node.get(key))
         if name not in legal:
-            what = "connector of a standard" if key == "shape" else "column"
-            hint = suggestion(name, list(legal), f"{what}s")
+            what, several = ("connector", "connectors of standards") if key == "shape" else ("column", "columns")
+            hint = suggestion(name, list(legal), several)
             node.problems.add("name-unknown", node.at(key), f"there is no {what} '{name}'", hint=hint)
             return None
     pin, signal = (columns.index(str(node.get(key))) for key in ("pin", "signal"))

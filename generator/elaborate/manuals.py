@@ -3,7 +3,7 @@
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
-from generator.elaborate.common import OBJECT_TYPES, known_manual, optional_text, runs, unique
+from generator.elaborate.common import OBJECT_TYPES, default, known_manual, optional_text, run, runs, unique
 from generator.model import Chapter, CobId, Manual, ObjectRef, StandardObject, StandardSubIndex
 from generator.model.gsd import DpTelegrams
 from generator.model.table import Connector, Contact
@@ -21,17 +21,6 @@ def manual(file: SourceFile) -> Manual:
             f"the manual '{root.get('id')}' stands in {file.stem}.yaml",
             hint=f"rename the file to {root.get('id')}.yaml",
         )
-    seen: dict[str, Node] = {}
-    for node in root.items("chapters"):
-        number = str(node.get("chapter"))
-        if number in seen:
-            node.problems.add(
-                "duplicate",
-                node.at("chapter"),
-                f"chapter {number} stands twice",
-                other=("first", seen[number].at("chapter")),
-            )
-        seen.setdefault(number, node)
     return Manual(
         id=str(root.get("id")),
         title=str(root.get("title")),
@@ -44,24 +33,29 @@ def manual(file: SourceFile) -> Manual:
         pages=root.get("pages"),
         chapters=tuple(
             Chapter(
-                number=number,
+                number=str(node.get("chapter")),
                 title=str(node.get("title")),
                 page=node.get("page"),
                 status=node.get("status"),
                 note=optional_text(node, "note"),
                 where=node.where,
             )
-            for number, node in seen.items()
+            for node in unique(root, "chapters", "chapter")
         ),
         where=root.where,
     )
 
 
+NO_ADDRESSES = range(0)
+"""Node addresses where no standard gives them."""
+
+
 @dataclass(frozen=True, slots=True)
 class Standards:
-    """What the standards define: objects, connection set, telegrams of PROFIBUS DP, connectors."""
+    """What the standards define: objects, node addresses, connection set, telegrams of PROFIBUS DP, connectors."""
 
     objects: tuple[StandardObject, ...]
+    node_addresses: range
     cob_ids: tuple[CobId, ...]
     telegrams: tuple[DpTelegrams, ...]
     connectors: tuple[Connector, ...]
@@ -80,6 +74,7 @@ def standards(files: Iterable[SourceFile], manuals: Mapping[str, Manual]) -> Sta
                 file.root.problems.add("duplicate", connector.where, message, other=("first", first.where))
     return Standards(
         tuple(entry for one in found for entry in one.objects),
+        next((one.node_addresses for one in found if one.node_addresses), NO_ADDRESSES),
         tuple(entry for one in found for entry in one.cob_ids),
         tuple(entry for one in found for entry in one.telegrams),
         tuple(entry for one in found for entry in one.connectors),
@@ -96,7 +91,7 @@ def _standard(file: SourceFile, manuals: Mapping[str, Manual]) -> Standards:
             base=int(node.get("base")),
             broadcast=bool(node.get("broadcast")),
             objects=tuple(
-                i for run in node.read("objects", references) or () for i in run.items if isinstance(i, ObjectRef)
+                i for refs in node.read("objects", references) or () for i in refs.items if isinstance(i, ObjectRef)
             ),
             cite=node.cite(),
             where=node.where,
@@ -105,7 +100,21 @@ def _standard(file: SourceFile, manuals: Mapping[str, Manual]) -> Standards:
     )
     telegrams = root.child("profibus_dp")
     connectors = tuple(_connector(node) for node in unique(root, "connectors"))
-    return Standards(objects, cob_ids, (_telegrams(telegrams),) if telegrams else (), connectors)
+    return Standards(
+        objects,
+        _node_addresses(root.child("node_addresses")),
+        cob_ids,
+        (_telegrams(telegrams),) if telegrams else (),
+        connectors,
+    )
+
+
+def _node_addresses(node: Node | None) -> range:
+    bounds = run(node, "run") if node else None
+    if node is None or bounds is None:
+        return NO_ADDRESSES
+    node.cite()
+    return range(bounds[0], bounds[1] + 1)
 
 
 def _connector(node: Node) -> Connector:
@@ -152,13 +161,15 @@ def _subindexes(subs: Node) -> list[StandardSubIndex]:
     for key, low, high in runs(subs):
         node = subs.child(key)
         assert node is not None
+        data_type = OBJECT_TYPES[str(node.get("type"))]
         found.append(
             StandardSubIndex(
                 first=low,
                 last=high,
                 name=str(node.get("name")),
-                data_type=OBJECT_TYPES[str(node.get("type"))],
+                data_type=data_type,
                 access=node.texts("access"),
+                default=default(node, "default", node.get("default"), data_type.is_number),
                 pdo_mapping=bool(node.get("pdo_mapping", False)),
                 mandatory=bool(node.get("mandatory", False)),
             )
@@ -169,14 +180,14 @@ def _subindexes(subs: Node) -> list[StandardSubIndex]:
 def object_run(node: Node) -> tuple[int, int]:
     """First and last index of an object entry ("I-1000", "I-1400 ... I-1403", "P-918")."""
     found = node.read("index", references) or ()
-    for run in found:
-        if run.open_run is not None:
-            low, high = run.open_run
+    for each in found:
+        if each.open_run is not None:
+            low, high = each.open_run
             if isinstance(low, ObjectRef) and isinstance(high, ObjectRef) and low.index <= high.index:
                 return low.index, high.index
             node.problems.add(
                 "run-order", node.at("index"), "the run does not ascend", hint="write the lower index first"
             )
-        elif run.items and isinstance(run.items[0], ObjectRef):
-            return run.items[0].index, run.items[0].index
+        elif each.items and isinstance(each.items[0], ObjectRef):
+            return each.items[0].index, each.items[0].index
     return 0, 0

@@ -55,9 +55,10 @@ def _expand(node: Node, frame: Frame) -> Iterator[DictionaryObject]:
     count = last - first + 1
     for index in range(first, last + 1):
         place = index - first
-        known = next((s for s in frame.standard if s.first <= index <= s.last), None)
         kind = "profidrive" if str(node.get("index")).startswith(PROFIDRIVE) else "canopen"
-        object_type = known.object_type if known and kind == "canopen" else node.get("object_type")
+        defined = frame.standard if kind == "canopen" else ()
+        known = next((s for s in defined if s.first <= index <= s.last), None)
+        object_type = known.object_type if known else node.get("object_type")
         if object_type is None:
             node.problems.add(
                 "standard-unknown",
@@ -71,9 +72,8 @@ def _expand(node: Node, frame: Frame) -> Iterator[DictionaryObject]:
             index=index,
             name=fill(str(node.get("name")), node, "name", {"n": place + 1}),
             object_type=str(object_type),
-            subindexes=tuple(
-                _subindexes(node, ObjectRef(index), place, count, known if kind == "canopen" else None, frame)
-            ),
+            standard=known,
+            subindexes=tuple(_subindexes(node, ObjectRef(index), place, count, known, frame)),
             description=str(node.get("description", "")).strip(),
             origin=origin(node),
             cite=_cite(node, place, count),
@@ -86,9 +86,7 @@ def _cite(node: Node, place: int, count: int) -> Cite:
     cites = node.get("cite")
     if isinstance(cites, str):
         return node.cite()
-    if not _fits(node, "cite", cites, count):
-        return node.file.cite(str(cites[0]), node.at("cite"))
-    return node.file.cite(str(cites[place]), node.at("cite"))
+    return node.cites("cite")[place if _fits(node, "cite", cites, count) else 0]
 
 
 def _fits(node: Node, key: str, values: Sequence[object], count: int) -> bool:

@@ -23,28 +23,23 @@ from generator.model import (
     NodeRelative,
     Option,
     Range,
+    StandardObject,
     SubIndex,
     Where,
 )
 
 IDENTITY = 0x1018
 """Index of the identity object (CiA 301): vendor, product and revision number in sub-indexes 1, 2 and 3."""
-MANDATORY = (0x1000, 0x1001, IDENTITY)
-"""Objects that CiA 306 lists as mandatory."""
 COMMUNICATION_AREA = range(0x1000, 0x2000)
 """Objects that CiA 301 defines."""
 MANUFACTURER_AREA = range(0x2000, 0x6000)
 """Objects that a manufacturer defines."""
 OBJECTS = range(0x1000, 0x10000)
 """Objects that a device can have; below lie the data types."""
-RPDO_PARAMETERS = range(0x1400, 0x1600)
-"""Communication parameters of receive PDOs, one object each."""
-TPDO_PARAMETERS = range(0x1800, 0x1A00)
-"""Communication parameters of transmit PDOs, one object each."""
-RPDO_MAPPINGS = range(0x1600, 0x1800)
-"""Mapping parameters of receive PDOs, one object each."""
-TPDO_MAPPINGS = range(0x1A00, 0x1C00)
-"""Mapping parameters of transmit PDOs, one object each."""
+RPDO_PARAMETERS, TPDO_PARAMETERS = 0x1400, 0x1800
+"""First of the communication parameters of receive and transmit PDOs, one object each."""
+_MAPPINGS = (0x1600, 0x1A00)
+"""First of the mapping parameters of receive and transmit PDOs, one object each."""
 
 _COUNT_NAME = "Highest sub-index supported"
 
@@ -88,14 +83,15 @@ class BusObject:
     """An object on the bus.
 
     ``object_type`` is "VAR" (one entry, sub-index 0), "ARRAY" (entries 1 ... n of one type) or "RECORD".
-    ``designation`` leads back to the manual ("C13350", "I-1018").  ``refused`` holds (sub-index, abort code) of
-    entries that the manual lists and the device refuses.
+    ``standard``: the objects of the standard that it is one of.  ``designation`` leads back to the manual ("C13350",
+    "I-1018").  ``refused`` holds (sub-index, abort code) of entries that the manual lists and the device refuses.
     """
 
     index: int
     designation: str
     name: str
     object_type: str
+    standard: StandardObject | None
     entries: tuple[Entry, ...]
     refused: tuple[tuple[int, int], ...]
     cites: tuple[Cite, ...]
@@ -131,9 +127,9 @@ class ObjectDictionary:
     product: Product
     objects: tuple[BusObject, ...]
 
-    def within(self, area: range) -> tuple[BusObject, ...]:
-        """Objects whose index lies in ``area``."""
-        return tuple(entry for entry in self.objects if entry.index in area)
+    def of_standard(self, first: int) -> tuple[BusObject, ...]:
+        """Objects of those that the standard defines from the index ``first`` on."""
+        return tuple(entry for entry in self.objects if entry.standard and entry.standard.first == first)
 
     def object(self, index: int) -> BusObject | None:
         """The object of that index, ``None`` where the device has none."""
@@ -144,7 +140,7 @@ class ObjectDictionary:
 class Configuration:
     """What one device on a bus is set to.
 
-    ``node``: node-ID 1 ... 127.  ``bit_rate`` in kbit/s.  ``values``: wire values by (index, sub-index).
+    ``node``: node-ID.  ``bit_rate`` in kbit/s.  ``values``: wire values by (index, sub-index).
     """
 
     node: int
@@ -180,11 +176,12 @@ def object_dictionaries(device: Device) -> tuple[ObjectDictionary, ...]:
     """
     if device.canopen is None:
         return ()
-    standard = _standard_objects(device)
+    nodes = device.canopen.node_addresses
+    standard = _standard_objects(device, nodes)
     slots: list[str | None] = [slot.name for slot in device.slots]
     dictionaries = []
     for slot in slots or [None]:
-        codes = [_code_object(code) for code in device.codes_of_slot(slot) if not code.internal]
+        codes = [_code_object(code, nodes) for code in device.codes_of_slot(slot) if not code.internal]
         objects = _ordered([*standard, *codes])
         dictionaries += [
             ObjectDictionary(
@@ -286,20 +283,20 @@ def _identified(identity: BusObject, product: Product) -> BusObject:
 # Objects of the standard
 
 
-def _standard_objects(device: Device) -> list[BusObject]:
+def _standard_objects(device: Device, nodes: range) -> list[BusObject]:
     objects = [entry for entry in device.objects if entry.kind == "canopen"]
     counts = Counter(entry.name for entry in objects)
     return [
-        _standard_object(entry, f"{entry.name} {entry.designation}" if counts[entry.name] > 1 else entry.name)
+        _standard_object(entry, f"{entry.name} {entry.designation}" if counts[entry.name] > 1 else entry.name, nodes)
         for entry in objects
     ]
 
 
-def _standard_object(entry: DictionaryObject, name: str) -> BusObject:
+def _standard_object(entry: DictionaryObject, name: str, nodes: range) -> BusObject:
     present = [sub for sub in entry.subindexes if sub.abort is None]
     counts = Counter(sub.name for sub in present)
     entries = tuple(
-        _standard_entry(sub, f"{sub.name} {sub.number}" if counts[sub.name] > 1 else sub.name, entry.index)
+        _standard_entry(sub, f"{sub.name} {sub.number}" if counts[sub.name] > 1 else sub.name, entry, nodes)
         for sub in present
     )
     errata = (*entry.errata, *(erratum for sub in entry.subindexes for erratum in sub.errata))
@@ -308,6 +305,7 @@ def _standard_object(entry: DictionaryObject, name: str) -> BusObject:
         designation=entry.designation,
         name=name,
         object_type=_object_type(entry.object_type, entries),
+        standard=entry.standard,
         entries=entries if entry.object_type == "VAR" else _counted(entries, entry.where),
         refused=tuple((sub.number, sub.abort) for sub in entry.subindexes if sub.abort is not None),
         cites=(entry.cite,),
@@ -316,7 +314,8 @@ def _standard_object(entry: DictionaryObject, name: str) -> BusObject:
     )
 
 
-def _standard_entry(sub: SubIndex, name: str, index: int) -> Entry:
+def _standard_entry(sub: SubIndex, name: str, entry: DictionaryObject, nodes: range) -> Entry:
+    mapping = entry.standard is not None and entry.standard.first in _MAPPINGS
     return _entry(
         subindex=sub.number,
         name=name,
@@ -327,11 +326,12 @@ def _standard_entry(sub: SubIndex, name: str, index: int) -> Entry:
         default=sub.default,
         mappable=sub.pdo_mapping,
         # Masters map no object without a default, and take no mapping entry without one.
-        needs_default=sub.pdo_mapping or index in RPDO_MAPPINGS or index in TPDO_MAPPINGS,
+        needs_default=sub.pdo_mapping or mapping,
         # Identifiers, mapping entries and identity numbers all are U32, and read best as eight digits.
-        bit_coded=index in COMMUNICATION_AREA and sub.data_type is DataType.UNSIGNED32,
+        bit_coded=entry.index in COMMUNICATION_AREA and sub.data_type is DataType.UNSIGNED32,
         options=sub.options,
         length=None,
+        nodes=nodes,
         where=sub.where,
     )
 
@@ -339,7 +339,7 @@ def _standard_entry(sub: SubIndex, name: str, index: int) -> Entry:
 # Codes
 
 
-def _code_object(code: Code) -> BusObject:
+def _code_object(code: Code, nodes: range) -> BusObject:
     mappable = any(condition.startswith("pdo_map") for condition in code.access.conditions)
     values = [
         (sub.number, sub.name or code.name, sub.follows or sub.default, sub.options or code.options, sub.where)
@@ -359,6 +359,7 @@ def _code_object(code: Code) -> BusObject:
             bit_coded=code.is_bitfield,
             options=options,
             length=code.length,
+            nodes=nodes,
             where=where,
         )
         for subindex, name, default, options, where in values
@@ -369,6 +370,7 @@ def _code_object(code: Code) -> BusObject:
         designation=code.designation,
         name=f"{code.designation} {code.name}",
         object_type=_object_type("ARRAY" if code.is_array else "VAR", entries),
+        standard=None,
         entries=_counted(entries, code.where) if code.is_array else entries,
         refused=(),
         cites=tuple(cite for cite in (code.cite, code.default_cite) if cite),
@@ -400,6 +402,7 @@ def _entry(
     bit_coded: bool,
     options: tuple[Option, ...],
     length: int | None,
+    nodes: range,
     where: Where,
 ) -> Entry:
     if default is not None and data_type.is_number == isinstance(default, str):
@@ -408,7 +411,7 @@ def _entry(
     if default is None and data_type.is_number and (needs_default or _excludes_zero(low, high)):
         default = 0 if low is None or high is None else min(max(0, low), high)
         remarks.append(Remark.DEFAULT_ASSUMED)
-    elif low is not None and high is not None and not _inside(default, low, high):
+    elif low is not None and high is not None and not _inside(default, low, high, nodes):
         low = high = None
         remarks.append(Remark.LIMITS_LEFT_OUT)
     return Entry(
@@ -447,9 +450,9 @@ def _excludes_zero(low: int | None, high: int | None) -> bool:
     return low is not None and high is not None and not low <= 0 <= high
 
 
-def _inside(default: Default | None, low: int, high: int) -> bool:
+def _inside(default: Default | None, low: int, high: int, nodes: range) -> bool:
     if isinstance(default, NodeRelative):
-        return low <= default.at(1) and default.at(127) <= high
+        return low <= default.at(nodes[0]) and default.at(nodes[-1]) <= high
     return not isinstance(default, int) or low <= default <= high
 
 

@@ -14,7 +14,6 @@ from itertools import groupby
 from generator import VERSION
 from generator.emit.base import EmitError, Output, Target
 from generator.emit.canopen import (
-    MANDATORY,
     MANUFACTURER_AREA,
     RPDO_PARAMETERS,
     TPDO_PARAMETERS,
@@ -223,11 +222,14 @@ def text(
 
 def lists(dictionary: ObjectDictionary) -> tuple[tuple[str, list[BusObject]], ...]:
     """The three lists of objects in the order of CiA 306."""
-    mandatory = [entry for entry in dictionary.objects if entry.index in MANDATORY]
-    manufacturer = [entry for entry in dictionary.objects if entry.index in MANUFACTURER_AREA]
-    optional = [
-        entry for entry in dictionary.objects if entry.index not in MANDATORY and entry.index not in MANUFACTURER_AREA
-    ]
+    mandatory, optional, manufacturer = [], [], []
+    for entry in dictionary.objects:
+        if entry.standard is not None and entry.standard.category == "mandatory":
+            mandatory.append(entry)
+        elif entry.index in MANUFACTURER_AREA:
+            manufacturer.append(entry)
+        else:
+            optional.append(entry)
     return (("MandatoryObjects", mandatory), ("OptionalObjects", optional), ("ManufacturerObjects", manufacturer))
 
 
@@ -385,8 +387,8 @@ def _device_info(dictionary: ObjectDictionary) -> DeviceInfo:
         bit_rates=tuple((f"BaudRate_{rate}", "1" if rate in facts.baud_rates else "0") for rate in _BIT_RATES),
         boot_up_master="1" if facts.boot_up_master else "0",
         granularity=str(facts.granularity),
-        rpdos=len(dictionary.within(RPDO_PARAMETERS)),
-        tpdos=len(dictionary.within(TPDO_PARAMETERS)),
+        rpdos=len(dictionary.of_standard(RPDO_PARAMETERS)),
+        tpdos=len(dictionary.of_standard(TPDO_PARAMETERS)),
         assumed=_ASSUMED,
     )
 

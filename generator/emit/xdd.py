@@ -156,8 +156,8 @@ def _network(dictionary: ObjectDictionary) -> Network:
     return Network(
         bit_rates=bit_rates,
         granularity=facts.granularity,
-        rpdos=len(dictionary.within(RPDO_PARAMETERS)),
-        tpdos=len(dictionary.within(TPDO_PARAMETERS)),
+        rpdos=len(dictionary.of_standard(RPDO_PARAMETERS)),
+        tpdos=len(dictionary.of_standard(TPDO_PARAMETERS)),
         boot_up_master="true" if facts.boot_up_master else "false",
     )
 

@@ -5,7 +5,7 @@ that builds it (``generator.elaborate``) has resolved every reference, run and s
 ``int`` or ``fractions.Fraction``; floats do not occur.
 """
 
-from generator.model.citation import Chapter, Cite, Manual, Origin, Where
+from generator.model.citation import ANYWHERE, Chapter, Cite, Cited, Manual, Origin, Where
 from generator.model.code import Access, AttributeRow, Code, PrintedIndex, SubCode
 from generator.model.device import CanOpenFacts, Device, Drive, DriveCommand, DriveModule, Model, Response, Slot
 from generator.model.erratum import Erratum, ErratumPlace
@@ -32,6 +32,7 @@ from generator.model.telegram import Example, Field, FieldType, Layout, Sizes, V
 from generator.model.values import Bit, BitField, DataType, Default, NodeRelative, Option, Range
 
 __all__ = [
+    "ANYWHERE",
     "Access",
     "AttributeRow",
     "Bit",
@@ -40,6 +41,7 @@ __all__ = [
     "Chapter",
     "Choice",
     "Cite",
+    "Cited",
     "CobId",
     "Code",
     "CodeCounts",

@@ -31,6 +31,8 @@ class Where:
 
 UNNAMED = "X"
 """Chapter of a source that names none, or not on the pages that are at hand."""
+ANYWHERE = ""
+"""Chapter of a page that is given without one."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,6 +52,15 @@ class Cite:
     def __str__(self) -> str:
         """Manual and place: "EDS94AYCCA-EN-5.0, 13.2 p. 114"."""
         return f"{self.manual}, {self.place}" if self.place else self.manual
+
+
+@dataclass(frozen=True, slots=True)
+class Cited:
+    """A citation and where spec writes it; ``page_alone`` where manual and chapter stand elsewhere."""
+
+    cite: Cite
+    where: Where
+    page_alone: bool
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from generator.model.citation import Cite, Manual, Origin, Where
+from generator.model.citation import Cite, Cited, Manual, Origin, Where
 from generator.model.code import Code
 from generator.model.erratum import Erratum
 from generator.model.error import ErrorEntry
@@ -94,14 +94,17 @@ class Drive:
 class CanOpenFacts:
     """What [DeviceInfo] of an EDS needs and no object says.
 
-    ``baud_rates`` in kbit/s, ``granularity`` of PDO mapping in bits, ``node_address``: number of its code.
+    ``baud_rates`` in kbit/s, ``granularity`` of PDO mapping in bits, ``node_address``: number of its code,
+    ``node_addresses``: those that the standard allows.
     """
 
     baud_rates: tuple[int, ...]
     granularity: int
     node_address: int | None
+    node_addresses: range
     boot_up_master: bool
     cite: Cite
+    where: Where
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -152,7 +155,10 @@ class Device:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Model:
-    """Everything: ``release`` is (version, "yyyy-mm-dd") of the spec, the only date that artifacts carry."""
+    """Everything: ``date`` ("yyyy-mm-dd") is that of the ``version`` of the spec, the only one that artifacts carry.
+
+    ``node_addresses``: those that a node on a CANopen bus can have.  ``cites``: every citation that was read.
+    """
 
     version: str
     date: str
@@ -160,5 +166,7 @@ class Model:
     drives: tuple[Drive, ...]
     manuals: tuple[Manual, ...]
     standard_objects: tuple[StandardObject, ...]
+    node_addresses: range
     cob_ids: tuple[CobId, ...]
     pins: tuple[Pin, ...]
+    cites: tuple[Cited, ...]

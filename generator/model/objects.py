@@ -43,13 +43,14 @@ class SubIndex:
 class DictionaryObject:
     """An object: ``kind`` "canopen" (``index`` 0x0000 ... 0xFFFF) or "profidrive" (``index`` is the PNU).
 
-    ``object_type`` is "VAR", "ARRAY" or "RECORD".
+    ``object_type`` is "VAR", "ARRAY" or "RECORD".  ``standard``: the objects of the standard that it is one of.
     """
 
     kind: str
     index: int
     name: str
     object_type: str
+    standard: "StandardObject | None"
     subindexes: tuple[SubIndex, ...]
     description: str
     origin: Origin
@@ -74,13 +75,17 @@ class DictionaryObject:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class StandardSubIndex:
-    """Sub-indexes ``first`` ... ``last`` as a standard defines them; ``access`` lists what it allows."""
+    """Sub-indexes ``first`` ... ``last`` as a standard defines them; ``access`` lists what it allows.
+
+    ``default``: what the standard presets, ``None`` where that is up to the device.
+    """
 
     first: int
     last: int
     name: str
     data_type: DataType
     access: tuple[str, ...]
+    default: Default | None
     pdo_mapping: bool
     mandatory: bool
 
@@ -116,3 +121,7 @@ class CobId:
     objects: tuple[ObjectRef, ...]
     cite: Cite
     where: Where
+
+    def at(self, node: int) -> int:
+        """COB-ID of the node with that address."""
+        return self.base if self.broadcast else self.base + node

@@ -77,6 +77,10 @@ class NodeRelative:
         """Value for node address ``node`` (1 ... 127)."""
         return self.base + node
 
+    def __str__(self) -> str:
+        """The value as spec writes it: "$NODEID + 0x180"."""
+        return f"$NODEID + 0x{self.base:X}"
+
 
 Default = int | str | NodeRelative
 """A default: number (of the wire value), text of a string, or a rule over the node address."""

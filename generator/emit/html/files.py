@@ -145,8 +145,8 @@ def _contents_row(dictionary: ObjectDictionary) -> Row:
     entries = [entry for found in dictionary.objects for entry in found.entries]
     counts = (
         *(len(objects) for _, objects in eds.lists(dictionary)),
-        len(dictionary.within(RPDO_PARAMETERS)),
-        len(dictionary.within(TPDO_PARAMETERS)),
+        len(dictionary.of_standard(RPDO_PARAMETERS)),
+        len(dictionary.of_standard(TPDO_PARAMETERS)),
         len(entries),
         sum(entry.mappable for entry in entries),
         sum(map(_follows_node, entries)),
