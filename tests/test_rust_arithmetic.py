@@ -125,11 +125,17 @@ def test_identifiers(cargo: Cargo, crate: Path, model: Model) -> None:
         for entry in model.cob_ids:
             found = f"cob_ids::{constant_name(snake(entry.name))}"
             for node in (1, 42, 127):
-                yield f"{found}.id.at({node})", str(entry.base + node)
-                yield f"{found}.id.node({entry.base + node})", f"Some({node})"
-            yield f"({found}.id.node({entry.base}), {found}.id.node({entry.base + 128}))", "(None, None)"
+                yield f"{found}.at({node})", f"Some({entry.base if entry.broadcast else entry.base + node})"
+                yield f"{found}.node({entry.base + node})", option(None if entry.broadcast else node)
+            for node in (0, 128, 255):
+                yield f"{found}.at({node})", option(entry.base if entry.broadcast else None)
+                yield f"{found}.node({entry.base + node})", "None"
+            yield f"({found}.base, {found}.broadcast)", f"({entry.base}, {str(entry.broadcast).lower()})"
             yield f"{found}.objects.len()", str(len(entry.objects))
             yield f"{found}.name", json.dumps(entry.name)
+        assert {entry.broadcast for entry in model.cob_ids} == {True, False}
+        for node, value in ((0, None), (1, 6), (127, 132), (128, None)):
+            yield f"Value::NodeRelative(NodeRelative {{ base: 5 }}).at({node})", option(value)
 
     check(cargo, "identifiers", crate, probes())
 

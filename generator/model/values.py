@@ -67,6 +67,10 @@ class Range:
     unit: str = ""
 
 
+NODE_ADDRESSES = range(1, 128)
+"""Addresses that CiA 301 gives to nodes."""
+
+
 @dataclass(frozen=True, slots=True)
 class NodeRelative:
     """A value that follows the node address: ``base`` + node address."""
@@ -74,7 +78,7 @@ class NodeRelative:
     base: int
 
     def at(self, node: int) -> int:
-        """Value for node address ``node`` (1 ... 127)."""
+        """Value for node address ``node``, one of ``NODE_ADDRESSES``."""
         return self.base + node
 
 

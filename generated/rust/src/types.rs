@@ -490,10 +490,13 @@ pub struct NodeRelative {
 }
 
 impl NodeRelative {
-    /// Value for the node address `node`.
+    /// Value for the node address `node`; `None` where there is no such address.
     #[must_use]
-    pub const fn at(self, node: u8) -> u32 {
-        self.base + node as u32
+    pub const fn at(self, node: u8) -> Option<u32> {
+        match node {
+            1..=127 => Some(self.base + node as u32),
+            _ => None,
+        }
     }
 
     /// Node address whose value this is, `None` where no address gives it.
@@ -522,13 +525,16 @@ pub enum Value {
 }
 
 impl Value {
-    /// Wire value for the node address `node`; `None` for a text.
+    /// Wire value for the node address `node`; `None` for a text, and for a rule where there is no such address.
     #[must_use]
     pub const fn at(self, node: u8) -> Option<i64> {
         match self {
             Self::Number(number) => Some(number),
             Self::Text(_) => None,
-            Self::NodeRelative(rule) => Some(rule.at(node) as i64),
+            Self::NodeRelative(rule) => match rule.at(node) {
+                Some(number) => Some(number as i64),
+                None => None,
+            },
         }
     }
 }
@@ -1193,10 +1199,32 @@ impl SwitchGroup {
 pub struct CobId {
     /// Name.
     pub name: &'static str,
-    /// COB-ID by node address.
-    pub id: NodeRelative,
+    /// The COB-ID of a broadcast, else what the node address is added to.
+    pub base: u32,
+    /// Whether the COB-ID is the same for all nodes.
+    pub broadcast: bool,
     /// Objects that hold it.
     pub objects: &'static [ObjectRef],
+}
+
+impl CobId {
+    /// COB-ID for the node address `node`, of a broadcast the same for any; `None` where there is no such address.
+    #[must_use]
+    pub const fn at(self, node: u8) -> Option<u32> {
+        if self.broadcast {
+            return Some(self.base);
+        }
+        NodeRelative { base: self.base }.at(node)
+    }
+
+    /// Node address that a COB-ID belongs to; `None` where no address gives it, and for a broadcast.
+    #[must_use]
+    pub const fn node(self, cob_id: u32) -> Option<u8> {
+        if self.broadcast {
+            return None;
+        }
+        NodeRelative { base: self.base }.node(cob_id)
+    }
 }
 
 /// A device with everything that its manual says.

@@ -18,6 +18,7 @@ from generator.emit.rust.notice import notice
 from generator.emit.rust.syntax import array, constant_name, declaration, doc, hexadecimal, string, type_name
 from generator.emit.rust.views import DataTypeFigures, Module, Record, TypeEnum, TypeVariant
 from generator.model import DataType, Light, Model, Origin
+from generator.model.values import NODE_ADDRESSES
 from generator.naming import Scope, safe, snake
 
 _OWN_MODULES = ("cob_ids", "codec", "default", "defmt", "drives", "formats", "macros", "serde", "std", "types")
@@ -172,6 +173,7 @@ def _types(head: str) -> str:
         "rust/types.rs.j2",
         notice=head,
         enums=enums,
+        nodes=NODE_ADDRESSES,
         data_types=[DataTypeFigures(name, hexadecimal(t.canopen_number, 4), t.bits) for t, name in names.items()],
         signed=" | ".join(f"Self::{name}" for t, name in names.items() if t.signed),
     )

@@ -319,7 +319,8 @@ def cob_id(value: CobId) -> Expression:
         "CobId",
         [
             ("name", string(value.name)),
-            ("id", node_relative(NodeRelative(value.base))),
+            ("base", hexadecimal(value.base, 3)),
+            ("broadcast", boolean(value.broadcast)),
             ("objects", array(map(object_ref, value.objects))),
         ],
     )
