@@ -160,7 +160,7 @@ def switch_facts(path: str, group: SwitchGroup) -> Iterator[str]:
     yield from listed(f"{path}/sets", group.sets)
     for position, row in enumerate(group.rows):
         number = int(row.value) if row.value.isdecimal() else None
-        on, either = (int("".join("01"[p == of] for p in reversed(row.positions)), 2) for of in "1x")
+        on, either = (int("".join("01"[p == of] for p in row.positions), 2) for of in "1x")
         yield from entry(f"{path}/row/{position}", value=row.value, number=number, on=on, either=either)
     yield from listed(f"{path}/note", remarks(group))
     yield from source_facts(path, group, group.errata)

@@ -179,6 +179,8 @@ def switch_probes(device: Device) -> Iterator[tuple[str, str]]:
         for on in range(1 << len(group.labels)):
             value = set_value(group, on)
             yield f"{found}.value({on})", option(value)
+            yield f"{found}.value({on | 1 << len(group.labels)})", "None"
+            yield f"{found}.row({on | 1 << len(group.labels)})", "None"
             if value is not None:
                 values.setdefault(value, []).append(on)
         for value, masks in values.items():
@@ -189,8 +191,8 @@ def switch_probes(device: Device) -> Iterator[tuple[str, str]]:
 
 
 def set_value(group: SwitchGroup, on: int) -> int | None:
-    """Value of switches that are ON, number n by bit n."""
-    positions = "".join("1" if on >> switch & 1 else "0" for switch in range(len(group.labels)))
+    """Value of switches that are ON; the mask reads as they are printed."""
+    positions = f"{on:0{len(group.labels)}b}"
     if group.weights:
         value = group.sum(positions)
         return value if group.valid is None or group.valid[0] <= value <= group.valid[1] else None

@@ -1113,7 +1113,7 @@ impl IndicatorTable {
     }
 }
 
-/// A printed position of DIP switches; bit n of a mask is switch n of [`SwitchGroup::labels`].
+/// A printed position of DIP switches; a mask reads as printed, its bit 0 is the last of [`SwitchGroup::labels`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
@@ -1128,7 +1128,7 @@ pub struct SwitchRow {
     pub either: u32,
 }
 
-/// DIP switches that set one thing; bit n of a mask is switch n of `labels`.
+/// DIP switches that set one thing; a mask of them reads as printed, its bit 0 is the last of `labels`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
@@ -1166,13 +1166,16 @@ impl SwitchGroup {
         self.rows.iter().find(|row| row.on == on & !row.either)
     }
 
-    /// Value of a position, `None` where it sets no number.
+    /// Value of a position, `None` where it sets no number or has bits that are no switches.
     #[must_use]
     pub fn value(&self, on: u32) -> Option<u32> {
         if self.weights.is_empty() {
             return self.row(on)?.number;
         }
-        let weights = self.weights.iter().enumerate();
+        if on >> self.weights.len() != 0 {
+            return None;
+        }
+        let weights = self.weights.iter().rev().enumerate();
         let sum = weights.filter(|(switch, _)| on >> switch & 1 == 1).map(|(_, weight)| weight).sum();
         self.is_valid(sum).then_some(sum)
     }
