@@ -1053,16 +1053,22 @@ impl Pattern {
         Self { light, colour: None, period: None, flashes: None, pause: None }
     }
 
-    /// Whether `seen` shows this pattern; what the manual does not print does not matter.
+    /// Whether both may be the same; what one of them does not say can be anything.
     #[must_use]
-    pub fn shows(&self, seen: &Self) -> bool {
-        self.light == Light::Any
-            || ((self.light == seen.light
-                || self.light == Light::OnOrFlicker && matches!(seen.light, Light::On | Light::Flicker))
-                && (self.colour.is_none() || self.colour == seen.colour)
-                && (self.period.is_none() || self.period == seen.period)
-                && (self.flashes.is_none() || self.flashes == seen.flashes)
-                && (self.pause.is_none() || self.pause == seen.pause))
+    pub fn fits(&self, other: &Self) -> bool {
+        fn may_be<T: PartialEq>(one: Option<T>, other: Option<T>) -> bool {
+            one.is_none() || other.is_none() || one == other
+        }
+        match (self.light, other.light) {
+            (Light::Any, _) | (_, Light::Any) => return true,
+            (Light::OnOrFlicker, Light::On | Light::Flicker) | (Light::On | Light::Flicker, Light::OnOrFlicker) => {}
+            (one, other) if one == other => {}
+            _ => return false,
+        }
+        may_be(self.colour, other.colour)
+            && may_be(self.period, other.period)
+            && may_be(self.flashes, other.flashes)
+            && may_be(self.pause, other.pause)
     }
 }
 
@@ -1103,13 +1109,18 @@ pub struct IndicatorTable {
 }
 
 impl IndicatorTable {
-    /// State that the LEDs show; `seen` holds one pattern for each LED.
+    /// Rows that fit what is seen, in their order; `seen` holds one pattern for each LED, if need be [`Light::Any`].
+    pub fn states<'a>(&self, seen: &'a [Pattern]) -> impl Iterator<Item = &'static IndicatorRow> + 'a {
+        self.rows.iter().filter(move |row| {
+            row.patterns.len() == seen.len() && row.patterns.iter().zip(seen).all(|(pattern, seen)| pattern.fits(seen))
+        })
+    }
+
+    /// The row that fits what is seen, `None` where none does or several do.
     #[must_use]
-    pub fn state(&self, seen: &[Pattern]) -> Option<&'static IndicatorRow> {
-        if seen.len() != self.leds.len() {
-            return None;
-        }
-        self.rows.iter().find(|row| row.patterns.iter().zip(seen).all(|(pattern, seen)| pattern.shows(seen)))
+    pub fn find(&self, seen: &[Pattern]) -> Option<&'static IndicatorRow> {
+        let mut states = self.states(seen);
+        states.next().filter(|_| states.next().is_none())
     }
 }
 
