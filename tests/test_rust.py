@@ -368,6 +368,7 @@ def code_probes(device: Device) -> Iterator[tuple[str, str]]:
     for number, code in codes.items():
         yield f"{device.id}::codes::{names.code_name(code).upper()}.number", str(number)
         yield f"{table}.get({number}).map(|code| code.index)", f"Some({code.index})"
+        yield f"{table}.get({number}).unwrap().cite.to_string()", json.dumps(str(code.cite), ensure_ascii=False)
         yield f"{table}.get_by_index({code.index}).map(|code| code.number)", f"Some({number})"
         for neighbour in {number - 1, number + 1} - codes.keys():
             yield f"{table}.get({neighbour}).is_none()", "true"

@@ -83,6 +83,12 @@ impl DataType {
     }
 }
 
+impl fmt::Display for DataType {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.pad(self.as_str())
+    }
+}
+
 /// How a fact came to be known.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -120,6 +126,12 @@ impl Origin {
             Self::Assumed => "assumed",
             Self::Public => "public",
         }
+    }
+}
+
+impl fmt::Display for Origin {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.pad(self.as_str())
     }
 }
 
@@ -172,6 +184,12 @@ impl Light {
     }
 }
 
+impl fmt::Display for Light {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.pad(self.as_str())
+    }
+}
+
 /// List that an object belongs to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -197,6 +215,12 @@ impl ObjectKind {
             Self::CanOpen => "canopen",
             Self::Profidrive => "profidrive",
         }
+    }
+}
+
+impl fmt::Display for ObjectKind {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.pad(self.as_str())
     }
 }
 
@@ -229,6 +253,12 @@ impl ObjectType {
             Self::Array => "ARRAY",
             Self::Record => "RECORD",
         }
+    }
+}
+
+impl fmt::Display for ObjectType {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.pad(self.as_str())
     }
 }
 
@@ -273,6 +303,12 @@ impl EntryAccess {
             Self::Rwr => "rwr",
             Self::Rww => "rww",
         }
+    }
+}
+
+impl fmt::Display for EntryAccess {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.pad(self.as_str())
     }
 }
 
@@ -371,10 +407,22 @@ impl std::error::Error for OutOfRange {}
 pub struct Cite {
     /// Id of the manual, for example of [`Manual::id`].
     pub manual: &'static str,
-    /// Chapter as printed.
+    /// Chapter as printed, `X` where the source names none.
     pub chapter: &'static str,
     /// Page as printed, `None` where unknown.
     pub page: Option<u16>,
+}
+
+impl fmt::Display for Cite {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.write_str(self.manual)?;
+        match (self.chapter, self.page) {
+            ("X", None) => Ok(()),
+            ("X", Some(page)) => write!(formatter, ", p. {page}"),
+            (chapter, None) => write!(formatter, ", {chapter}"),
+            (chapter, Some(page)) => write!(formatter, ", {chapter} p. {page}"),
+        }
+    }
 }
 
 /// A manual that facts were taken from.
@@ -540,7 +588,7 @@ impl Value {
 }
 
 /// A code, or one subcode of it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct CodeRef {
@@ -550,8 +598,16 @@ pub struct CodeRef {
     pub subcode: Option<u8>,
 }
 
+impl fmt::Display for CodeRef {
+    /// As the manuals write it.
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(formatter, "C{:05}", self.number)?;
+        self.subcode.map_or(Ok(()), |subcode| write!(formatter, "/{subcode}"))
+    }
+}
+
 /// An object of the object dictionary, or one sub-index of it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct ObjectRef {
@@ -559,6 +615,14 @@ pub struct ObjectRef {
     pub index: u16,
     /// Sub-index, `None` for the whole object.
     pub subindex: Option<u8>,
+}
+
+impl fmt::Display for ObjectRef {
+    /// As the manuals write it.
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(formatter, "I-{:04X}", self.index)?;
+        self.subindex.map_or(Ok(()), |subindex| write!(formatter, "/{subindex}"))
+    }
 }
 
 /// What may be done with a code.

@@ -18,6 +18,7 @@ from generator.emit.rust.notice import notice
 from generator.emit.rust.syntax import array, constant_name, declaration, doc, hexadecimal, string, type_name
 from generator.emit.rust.views import DataTypeFigures, Module, Record, TypeEnum, TypeVariant
 from generator.model import DataType, Light, Model, Origin
+from generator.model.citation import UNNAMED
 from generator.model.values import NODE_ADDRESSES
 from generator.naming import Scope, safe, snake
 
@@ -174,6 +175,7 @@ def _types(head: str) -> str:
         notice=head,
         enums=enums,
         nodes=NODE_ADDRESSES,
+        unnamed=UNNAMED,
         data_types=[DataTypeFigures(name, hexadecimal(t.canopen_number, 4), t.bits) for t, name in names.items()],
         signed=" | ".join(f"Self::{name}" for t, name in names.items() if t.signed),
     )
