@@ -14,8 +14,10 @@ from generator.emit.rust import TARGET
 from generator.emit.rust.syntax import constant_name, type_name
 from generator.model import (
     Code,
+    CodeRef,
     Device,
     Drive,
+    ErrorEntry,
     IndicatorRow,
     Light,
     Model,
@@ -107,11 +109,12 @@ def index_probes(device: Device) -> Iterator[tuple[str, str]]:
             names = [other.number for other in device.codes if other.name == code.name]
             quoted = json.dumps(code.name, ensure_ascii=False)
             yield f"{record}.codes.find({quoted}, None).map(|code| code.number)", f"Some({names[0]})"
-            own = [other.number for other in device.codes if (other.name, other.slot) == (code.name, code.slot)]
-            if code.slot:
+            for slot in device.slots:
+                inside = (None, slot.name)
+                own = [other.number for other in device.codes if other.name == code.name and other.slot in inside]
                 yield (
-                    f"{record}.codes.find({quoted}, Some({json.dumps(code.slot)})).map(|code| code.number)",
-                    f"Some({own[0]})",
+                    f"{record}.codes.find({quoted}, Some({json.dumps(slot.name)})).map(|code| code.number)",
+                    option(own[0] if own else None),
                 )
         yield f'{record}.codes.find("no such name", None).is_none()', "true"
         yield f"{record}.drive.unwrap().index({device.drive.index_base + 1})", "None"
@@ -167,6 +170,36 @@ def test_error_numbers(cargo: Cargo, crate: Path, model: Model) -> None:
             yield f"{made}.with_{name}({ones - value}).0", str(number ^ field.mask)
 
     check(cargo, "error-numbers", crate, probes())
+
+
+def test_codes_that_set_a_response(cargo: Cargo, crate: Path, model: Model) -> None:
+    def probes() -> Iterator[tuple[str, str]]:
+        for device in model.devices:
+            for kind in {error.kind for error in device.errors}:
+                found = f"{device.id}::errors::{kind}::TABLE.codes_for"
+                errors = [error for error in device.errors if error.kind == kind]
+                beyond = 1 + max(error.last for error in errors)
+                for number, codes in [(beyond, ()), *(pair for error in errors for pair in codes_by_number(error))]:
+                    shown = json.dumps([str(code) for code in codes])
+                    for reported in {number, number | reported_bits(device) if kind == "device" else number}:
+                        yield f"{found}({reported}).iter().map(|code| code.to_string()).collect::<Vec<_>>()", shown
+
+    expected = dict(probes())
+    assert {0, 1, 2} <= {len(json.loads(shown)) for shown in expected.values()}
+    check(cargo, "responses", crate, iter(expected.items()))
+
+
+def codes_by_number(error: ErrorEntry) -> Iterator[tuple[int, tuple[CodeRef, ...]]]:
+    numbers = range(error.number, error.last + 1)
+    if len(error.adjustable_in) == len(numbers):
+        yield from ((number, (code,)) for number, code in zip(numbers, error.adjustable_in, strict=True))
+    else:
+        yield from ((number, error.adjustable_in) for number in (error.number, error.last))
+
+
+def reported_bits(device: Device) -> int:
+    fields = dict(device.drive.error_fields) if device.drive else {}
+    return sum(fields[name].mask for name in ("response", "instance") if name in fields)
 
 
 # Switches, LEDs, tables.

@@ -901,7 +901,8 @@ pub struct ErrorEntry {
     pub response: Option<&'static str>,
     /// Responses that can be selected.
     pub responses: &'static [&'static str],
-    /// Codes that set the response; of a run one for each number.
+    /// Codes that set the response: as many as numbers are one for each, else they are alternatives, one for each slot.
+    /// [`ErrorTable::codes_for`] chooses.
     pub adjustable_in: &'static [CodeRef],
     /// Value of the error register that goes with it, as printed.
     pub register: Option<&'static str>,
@@ -1412,10 +1413,11 @@ impl CodeTable {
         self.index_base.checked_sub(index).and_then(|number| self.get(number))
     }
 
-    /// Code of that name, of that slot alone where one is given.
+    /// First code of that name, where a slot is given of those in it; a code without slot is in each.
     #[must_use]
     pub fn find(&self, name: &str, slot: Option<&str>) -> Option<&'static Code> {
-        self.entries.iter().find(|code| code.name == name && (slot.is_none() || code.slot == slot))
+        let is_in = |code: &Code| slot.is_none() || code.slot.is_none() || code.slot == slot;
+        self.entries.iter().find(|code| code.name == name && is_in(code))
     }
 
     /// All codes.
@@ -1613,6 +1615,21 @@ impl ErrorTable {
     #[must_use]
     pub fn get(&self, number: u32) -> Option<&'static ErrorEntry> {
         self.position(number).map(|position| &self.entries[position])
+    }
+
+    /// Codes that set the response to a number as the device reports it: none, one, or one for each slot.
+    #[must_use]
+    pub fn codes_for(&self, number: u32) -> &'static [CodeRef] {
+        let Some(entry) = self.get(number) else {
+            return &[];
+        };
+        let (place, last) = ((number & self.mask) - entry.number, entry.last - entry.number);
+        let codes = entry.adjustable_in;
+        if codes.len().checked_sub(1) == Some(last as usize) {
+            core::slice::from_ref(&codes[place as usize])
+        } else {
+            codes
+        }
     }
 
     /// Causes and remedies of a number as the device reports it.
