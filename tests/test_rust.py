@@ -407,8 +407,10 @@ def bit_probes(device: Device) -> Iterator[tuple[str, str]]:
                 name = (name if name[0].isalpha() else f"n{name}").upper()
                 ones = 2 ** (field.high + 1) - 2**field.low
                 yield f"({module}::{name}_MASK, {module}::{name}_SHIFT)", f"({ones}, {field.low})"
-                yield f"{module}::FIELDS[{code.fields.index(field)}].extract({ones})", str(ones >> field.low)
-                yield f"{module}::FIELDS[{code.fields.index(field)}].insert({ones}, 1)", str(1 << field.low)
+                found, largest = f"{module}::FIELDS[{code.fields.index(field)}]", ones >> field.low
+                yield f"{found}.get({ones})", str(largest)
+                yield f"{found}.put({ones}, 1)", f"Some({1 << field.low})"
+                yield f"({found}.put(0, {largest}), {found}.put(0, {largest + 1}))", f"(Some({ones}), None)"
 
 
 def object_probes(device: Device) -> Iterator[tuple[str, str]]:

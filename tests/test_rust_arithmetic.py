@@ -13,6 +13,7 @@ from rust_crate import Cargo, edge_indicators, edge_switches, edge_tables, texts
 from generator.emit.rust import TARGET
 from generator.emit.rust.syntax import constant_name, type_name
 from generator.model import (
+    Cite,
     Code,
     CodeRef,
     Device,
@@ -24,6 +25,7 @@ from generator.model import (
     Pattern,
     SwitchGroup,
 )
+from generator.model.citation import UNNAMED
 from generator.naming import safe, snake
 
 
@@ -59,27 +61,35 @@ def scaling_probes(device: Device) -> Iterator[tuple[str, str]]:
     for code in device.codes:
         found = f"{device.id}::codes::TABLE.get({code.number}).unwrap()"
         bounds = limits(code)
+        refused = f"Err(OutOfRange {{ limits: {option(bounds)} }})"
         if bounds is None:
-            yield f"{found}.wire(0.0)", "Err(OutOfRange)"
+            for call in ("to_wire(0.0)", "from_wire(0)", "check(0)"):
+                yield f"{found}.{call}", refused
             continue
         low, high = bounds
+        least, most = code.data_type.lowest, min(code.data_type.highest, 2**63 - 1)
         factor = code.scaling or 1
         for raw in {low, high, (low + high) // 2}:
             yield f"{found}.check({raw}_i64)", f"Ok({raw})"
             if abs(raw) < 2**53:
-                yield f"{found}.physical({raw}_i64)", repr(raw / factor)
-                yield f"{found}.wire({raw / factor!r})", f"Ok({raw})"
+                yield f"{found}.from_wire({raw}_i64)", f"Ok({raw / factor!r})"
+                yield f"{found}.to_wire({raw / factor!r})", f"Ok({raw})"
         for raw in (low - 1, high + 1):
             if abs(raw) < 2**53:
-                yield f"{found}.check({raw}_i64)", "Err(OutOfRange)"
-                yield f"{found}.wire({raw / factor!r})", "Err(OutOfRange)"
+                outside = f"Err(OutOfRange {{ limits: Some(({least}, {most})) }})"
+                yield f"{found}.check({raw}_i64)", refused
+                yield f"{found}.to_wire({raw / factor!r})", refused
+                yield f"{found}.from_wire({raw}_i64)", f"Ok({raw / factor!r})" if least <= raw <= most else outside
+        for near in (low - 0.4, high + 0.4):  # The nearest number would do.
+            if abs(near) < 2**40:
+                yield f"{found}.to_wire({near / factor!r})", refused
         for value in ("f64::NAN", "f64::INFINITY", "f64::NEG_INFINITY", "1e300"):
-            yield f"{found}.wire({value})", "Err(OutOfRange)"
+            yield f"{found}.to_wire({value})", refused
         middle = (low + high) // 2
         if high - low > 2 and middle < 2**40:
             for part in (Fraction(3, 10), Fraction(7, 10)):
                 nearest = floor(middle + part + Fraction(1, 2))
-                yield f"{found}.wire({float((middle + part) / factor)!r})", f"Ok({nearest})"
+                yield f"{found}.to_wire({float((middle + part) / factor)!r})", f"Ok({nearest})"
 
 
 def limits(code: Code) -> tuple[int, int] | None:
@@ -167,7 +177,9 @@ def test_error_numbers(cargo: Cargo, crate: Path, model: Model) -> None:
         for name, field in drive.error_fields:
             value, ones = number >> field.low & (1 << (field.high - field.low + 1)) - 1, field.mask >> field.low
             yield f"{made}.{name}()", str(value)
-            yield f"{made}.with_{name}({ones - value}).0", str(number ^ field.mask)
+            yield f"{made}.with_{name}({ones - value}).map(|number| number.0)", f"Some({number ^ field.mask})"
+            if ones < 2**32 - 1:
+                yield f"{made}.with_{name}({ones + 1})", "None"
 
     check(cargo, "error-numbers", crate, probes())
 
@@ -200,6 +212,30 @@ def codes_by_number(error: ErrorEntry) -> Iterator[tuple[int, tuple[CodeRef, ...
 def reported_bits(device: Device) -> int:
     fields = dict(device.drive.error_fields) if device.drive else {}
     return sum(fields[name].mask for name in ("response", "instance") if name in fields)
+
+
+def test_messages(cargo: Cargo, crate: Path, model: Model) -> None:
+    """What a program prints to a person."""
+    codes = [
+        (limits(code), f"{device.id}::codes::TABLE.get({code.number}).unwrap()")
+        for device in model.devices
+        for code in device.codes
+    ]
+    (low, high), number = next((bounds, found) for bounds, found in codes if bounds)
+    text = next(found for bounds, found in codes if bounds is None)
+    outside = f"the wire value does not lie within {low} ... {high}"
+    probes = {
+        f"{number}.check({high + 1}).unwrap_err().to_string()": json.dumps(outside),
+        f"{text}.to_wire(0.0).unwrap_err().to_string()": '"the code is a text, not a number"',
+        'format!("{:>8}|", Light::Flash)': '"   flash|"',
+        "CodeRef { number: 7, subcode: None }.to_string()": '"C00007"',
+        "CodeRef { number: 13613, subcode: Some(2) }.to_string()": '"C13613/2"',
+        "ObjectRef { index: 0x1A00, subindex: Some(0) }.to_string()": '"I-1A00/0"',
+    }
+    for cite in (Cite("M", "1.2", 3), Cite("M", "1.2"), Cite("M", UNNAMED, 3), Cite("M", UNNAMED)):
+        made = f'manual: "M", chapter: "{cite.chapter}", page: {option(cite.page)}'
+        probes[f"Cite {{ {made} }}.to_string()"] = f'"{cite}"'
+    check(cargo, "messages", crate, iter(probes.items()))
 
 
 # Switches, LEDs, tables.

@@ -384,16 +384,22 @@ impl<T: fmt::Display> fmt::Display for UnknownValue<T> {
 #[cfg(feature = "std")]
 impl<T: fmt::Debug + fmt::Display> std::error::Error for UnknownValue<T> {}
 
-/// A value that a code cannot take.
+/// A value that a code cannot take, or that its data type does not hold.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
-pub struct OutOfRange;
+pub struct OutOfRange {
+    /// Lowest and highest wire value that would do; `None` where no number does, for the code is a text.
+    pub limits: Option<(i64, i64)>,
+}
 
 impl fmt::Display for OutOfRange {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        formatter.write_str("the code cannot take this value")
+        match self.limits {
+            Some((low, high)) => write!(formatter, "the wire value does not lie within {low} ... {high}"),
+            None => formatter.write_str("the code is a text, not a number"),
+        }
     }
 }
 
@@ -496,14 +502,17 @@ impl BitField {
 
     /// Number that the field holds in `value`.
     #[must_use]
-    pub const fn extract(self, value: u32) -> u32 {
+    pub const fn get(self, value: u32) -> u32 {
         (value & self.mask()) >> self.low
     }
 
-    /// `value` with `number` in the field; bits of `number` that the field has no room for are dropped.
+    /// `value` with `number` in the field; `None` where `number` does not fit into it.
     #[must_use]
-    pub const fn insert(self, value: u32, number: u32) -> u32 {
-        (value & !self.mask()) | ((number << self.low) & self.mask())
+    pub const fn put(self, value: u32, number: u32) -> Option<u32> {
+        if number > self.mask() >> self.low {
+            return None;
+        }
+        Some(value & !self.mask() | number << self.low)
     }
 }
 
@@ -754,37 +763,61 @@ impl Code {
         None
     }
 
-    /// `raw` where it lies in the range and fits the data type.
+    /// Lowest and highest wire value that the code takes, within its range and its data type; `None` for a text.
+    #[must_use]
+    pub fn limits(&self) -> Option<(i64, i64)> {
+        let (low, high) = self.data_type.limits()?;
+        Some(self.range.map_or((low, high), |range| (range.low.max(low), range.high.min(high))))
+    }
+
+    /// `raw` where it lies within the [`limits`](Self::limits).
     ///
     /// # Errors
     ///
     /// The code cannot take the value, or is a text.
     pub fn check(&self, raw: i64) -> Result<i64, OutOfRange> {
-        let (low, high) = self.data_type.limits().ok_or(OutOfRange)?;
-        let inside = low <= raw && raw <= high && self.range.map_or(true, |range| range.contains(raw));
-        inside.then_some(raw).ok_or(OutOfRange)
+        within(self.limits(), raw)
     }
 
     /// Wire value of a physical value: times the scaling factor, rounded to the nearest number, halves away from 0.
     ///
     /// # Errors
     ///
-    /// The code cannot take the value, or is a text.
-    pub fn wire(&self, physical: f64) -> Result<i64, OutOfRange> {
-        let scaled = physical * f64::from(self.scaling.unwrap_or(1));
-        let bound = i64::MAX as f64;
-        if scaled.is_nan() || scaled <= -bound || scaled >= bound {
-            return Err(OutOfRange);
+    /// The value as it is given lies outside the [`limits`](Self::limits), or the code is a text.
+    pub fn to_wire(&self, physical: f64) -> Result<i64, OutOfRange> {
+        let limits = self.limits();
+        let (low, high) = limits.ok_or(OutOfRange { limits })?;
+        if !(self.unscaled(low)..=self.unscaled(high)).contains(&physical) {
+            return Err(OutOfRange { limits });
         }
+        let scaled = physical * self.factor();
         let whole = scaled as i64;
         let rest = scaled - whole as f64;
         self.check(whole + i64::from(rest >= 0.5) - i64::from(rest <= -0.5))
     }
 
-    /// Physical value of a wire value: divided by the scaling factor.
-    #[must_use]
-    pub fn physical(&self, raw: i64) -> f64 {
-        raw as f64 / f64::from(self.scaling.unwrap_or(1))
+    /// Physical value of a wire value: divided by the scaling factor; it may lie outside the range.
+    ///
+    /// # Errors
+    ///
+    /// The data type does not hold the value, or the code is a text.
+    pub fn from_wire(&self, raw: i64) -> Result<f64, OutOfRange> {
+        within(self.data_type.limits(), raw).map(|raw| self.unscaled(raw))
+    }
+
+    fn factor(&self) -> f64 {
+        f64::from(self.scaling.unwrap_or(1))
+    }
+
+    fn unscaled(&self, raw: i64) -> f64 {
+        raw as f64 / self.factor()
+    }
+}
+
+fn within(limits: Option<(i64, i64)>, raw: i64) -> Result<i64, OutOfRange> {
+    match limits {
+        Some((low, high)) if low <= raw && raw <= high => Ok(raw),
+        _ => Err(OutOfRange { limits }),
     }
 }
 
