@@ -393,12 +393,6 @@ def default_record(key: str, value: object, follows: NodeRelative | None) -> tup
     return record, 2 * isinstance(value, (int, str)) + 4 * (base is not None)
 
 
-def highest_node(model: Model) -> int:
-    """Last node address before a COB-ID of one function is one of another."""
-    bases = {entry.base for entry in model.cob_ids}
-    return next(node for node in range(1, 2**11) if any(base + node in bases for base in bases)) - 1
-
-
 def expected_common(model: Model) -> Values:
     found: Values = {f"DRIVESPEC_TYPE_{data_type.canopen_name}": data_type.canopen_number for data_type in DataType}
     found |= {f"DRIVESPEC_ACCESS_{screaming(flag)}": 2**bit for bit, flag in enumerate(ACCESS_FLAGS)}
@@ -408,7 +402,7 @@ def expected_common(model: Model) -> Values:
     for entry in model.cob_ids:
         found[f"DRIVESPEC_COB_ID_{screaming(entry.name)}{'' if entry.broadcast else '_BASE'}"] = entry.base
     if model.cob_ids:
-        found["DRIVESPEC_NODE_MAX"] = highest_node(model)
+        found |= {"DRIVESPEC_NODE_MIN": model.node_addresses[0], "DRIVESPEC_NODE_MAX": model.node_addresses[-1]}
     for drive in model.drives:
         name = screaming(drive.id)
         found[f"{name}_INDEX_BASE"] = drive.index_base

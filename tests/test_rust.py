@@ -160,7 +160,7 @@ def switch_facts(path: str, group: SwitchGroup) -> Iterator[str]:
     yield from listed(f"{path}/sets", group.sets)
     for position, row in enumerate(group.rows):
         number = int(row.value) if row.value.isdecimal() else None
-        on, either = (int("".join("01"[p == of] for p in reversed(row.positions)), 2) for of in "1x")
+        on, either = (int("".join("01"[p == of] for p in row.positions), 2) for of in "1x")
         yield from entry(f"{path}/row/{position}", value=row.value, number=number, on=on, either=either)
     yield from listed(f"{path}/note", remarks(group))
     yield from source_facts(path, group, group.errata)
@@ -368,6 +368,7 @@ def code_probes(device: Device) -> Iterator[tuple[str, str]]:
     for number, code in codes.items():
         yield f"{device.id}::codes::{names.code_name(code).upper()}.number", str(number)
         yield f"{table}.get({number}).map(|code| code.index)", f"Some({code.index})"
+        yield f"{table}.get({number}).unwrap().cite.to_string()", json.dumps(str(code.cite), ensure_ascii=False)
         yield f"{table}.get_by_index({code.index}).map(|code| code.number)", f"Some({number})"
         for neighbour in {number - 1, number + 1} - codes.keys():
             yield f"{table}.get({neighbour}).is_none()", "true"
@@ -406,8 +407,10 @@ def bit_probes(device: Device) -> Iterator[tuple[str, str]]:
                 name = (name if name[0].isalpha() else f"n{name}").upper()
                 ones = 2 ** (field.high + 1) - 2**field.low
                 yield f"({module}::{name}_MASK, {module}::{name}_SHIFT)", f"({ones}, {field.low})"
-                yield f"{module}::FIELDS[{code.fields.index(field)}].extract({ones})", str(ones >> field.low)
-                yield f"{module}::FIELDS[{code.fields.index(field)}].insert({ones}, 1)", str(1 << field.low)
+                found, largest = f"{module}::FIELDS[{code.fields.index(field)}]", ones >> field.low
+                yield f"{found}.get({ones})", str(largest)
+                yield f"{found}.put({ones}, 1)", f"Some({1 << field.low})"
+                yield f"({found}.put(0, {largest}), {found}.put(0, {largest + 1}))", f"(Some({ones}), None)"
 
 
 def object_probes(device: Device) -> Iterator[tuple[str, str]]:

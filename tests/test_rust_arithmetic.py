@@ -1,7 +1,7 @@
 """Arithmetic and look-ups of the Rust crate, against the model."""
 
 import json
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from fractions import Fraction
 from math import floor
@@ -12,7 +12,20 @@ from rust_crate import Cargo, edge_indicators, edge_switches, edge_tables, texts
 
 from generator.emit.rust import TARGET
 from generator.emit.rust.syntax import constant_name, type_name
-from generator.model import Code, Device, Drive, IndicatorTable, Light, Model, Pattern, SwitchGroup
+from generator.model import (
+    Cite,
+    Code,
+    CodeRef,
+    Device,
+    Drive,
+    ErrorEntry,
+    IndicatorRow,
+    Light,
+    Model,
+    Pattern,
+    SwitchGroup,
+)
+from generator.model.citation import UNNAMED
 from generator.naming import safe, snake
 
 
@@ -48,27 +61,35 @@ def scaling_probes(device: Device) -> Iterator[tuple[str, str]]:
     for code in device.codes:
         found = f"{device.id}::codes::TABLE.get({code.number}).unwrap()"
         bounds = limits(code)
+        refused = f"Err(OutOfRange {{ limits: {option(bounds)} }})"
         if bounds is None:
-            yield f"{found}.wire(0.0)", "Err(OutOfRange)"
+            for call in ("to_wire(0.0)", "from_wire(0)", "check(0)"):
+                yield f"{found}.{call}", refused
             continue
         low, high = bounds
+        least, most = code.data_type.lowest, min(code.data_type.highest, 2**63 - 1)
         factor = code.scaling or 1
         for raw in {low, high, (low + high) // 2}:
             yield f"{found}.check({raw}_i64)", f"Ok({raw})"
             if abs(raw) < 2**53:
-                yield f"{found}.physical({raw}_i64)", repr(raw / factor)
-                yield f"{found}.wire({raw / factor!r})", f"Ok({raw})"
+                yield f"{found}.from_wire({raw}_i64)", f"Ok({raw / factor!r})"
+                yield f"{found}.to_wire({raw / factor!r})", f"Ok({raw})"
         for raw in (low - 1, high + 1):
             if abs(raw) < 2**53:
-                yield f"{found}.check({raw}_i64)", "Err(OutOfRange)"
-                yield f"{found}.wire({raw / factor!r})", "Err(OutOfRange)"
+                outside = f"Err(OutOfRange {{ limits: Some(({least}, {most})) }})"
+                yield f"{found}.check({raw}_i64)", refused
+                yield f"{found}.to_wire({raw / factor!r})", refused
+                yield f"{found}.from_wire({raw}_i64)", f"Ok({raw / factor!r})" if least <= raw <= most else outside
+        for near in (low - 0.4, high + 0.4):  # The nearest number would do.
+            if abs(near) < 2**40:
+                yield f"{found}.to_wire({near / factor!r})", refused
         for value in ("f64::NAN", "f64::INFINITY", "f64::NEG_INFINITY", "1e300"):
-            yield f"{found}.wire({value})", "Err(OutOfRange)"
+            yield f"{found}.to_wire({value})", refused
         middle = (low + high) // 2
         if high - low > 2 and middle < 2**40:
             for part in (Fraction(3, 10), Fraction(7, 10)):
                 nearest = floor(middle + part + Fraction(1, 2))
-                yield f"{found}.wire({float((middle + part) / factor)!r})", f"Ok({nearest})"
+                yield f"{found}.to_wire({float((middle + part) / factor)!r})", f"Ok({nearest})"
 
 
 def limits(code: Code) -> tuple[int, int] | None:
@@ -98,11 +119,12 @@ def index_probes(device: Device) -> Iterator[tuple[str, str]]:
             names = [other.number for other in device.codes if other.name == code.name]
             quoted = json.dumps(code.name, ensure_ascii=False)
             yield f"{record}.codes.find({quoted}, None).map(|code| code.number)", f"Some({names[0]})"
-            own = [other.number for other in device.codes if (other.name, other.slot) == (code.name, code.slot)]
-            if code.slot:
+            for slot in device.slots:
+                inside = (None, slot.name)
+                own = [other.number for other in device.codes if other.name == code.name and other.slot in inside]
                 yield (
-                    f"{record}.codes.find({quoted}, Some({json.dumps(code.slot)})).map(|code| code.number)",
-                    f"Some({own[0]})",
+                    f"{record}.codes.find({quoted}, Some({json.dumps(slot.name)})).map(|code| code.number)",
+                    option(own[0] if own else None),
                 )
         yield f'{record}.codes.find("no such name", None).is_none()', "true"
         yield f"{record}.drive.unwrap().index({device.drive.index_base + 1})", "None"
@@ -125,11 +147,17 @@ def test_identifiers(cargo: Cargo, crate: Path, model: Model) -> None:
         for entry in model.cob_ids:
             found = f"cob_ids::{constant_name(snake(entry.name))}"
             for node in (1, 42, 127):
-                yield f"{found}.id.at({node})", str(entry.base + node)
-                yield f"{found}.id.node({entry.base + node})", f"Some({node})"
-            yield f"({found}.id.node({entry.base}), {found}.id.node({entry.base + 128}))", "(None, None)"
+                yield f"{found}.at({node})", f"Some({entry.base if entry.broadcast else entry.base + node})"
+                yield f"{found}.node({entry.base + node})", option(None if entry.broadcast else node)
+            for node in (0, 128, 255):
+                yield f"{found}.at({node})", option(entry.base if entry.broadcast else None)
+                yield f"{found}.node({entry.base + node})", "None"
+            yield f"({found}.base, {found}.broadcast)", f"({entry.base}, {str(entry.broadcast).lower()})"
             yield f"{found}.objects.len()", str(len(entry.objects))
             yield f"{found}.name", json.dumps(entry.name)
+        assert {entry.broadcast for entry in model.cob_ids} == {True, False}
+        for node, value in ((0, None), (1, 6), (127, 132), (128, None)):
+            yield f"Value::NodeRelative(NodeRelative {{ base: 5 }}).at({node})", option(value)
 
     check(cargo, "identifiers", crate, probes())
 
@@ -149,9 +177,65 @@ def test_error_numbers(cargo: Cargo, crate: Path, model: Model) -> None:
         for name, field in drive.error_fields:
             value, ones = number >> field.low & (1 << (field.high - field.low + 1)) - 1, field.mask >> field.low
             yield f"{made}.{name}()", str(value)
-            yield f"{made}.with_{name}({ones - value}).0", str(number ^ field.mask)
+            yield f"{made}.with_{name}({ones - value}).map(|number| number.0)", f"Some({number ^ field.mask})"
+            if ones < 2**32 - 1:
+                yield f"{made}.with_{name}({ones + 1})", "None"
 
     check(cargo, "error-numbers", crate, probes())
+
+
+def test_codes_that_set_a_response(cargo: Cargo, crate: Path, model: Model) -> None:
+    def probes() -> Iterator[tuple[str, str]]:
+        for device in model.devices:
+            for kind in {error.kind for error in device.errors}:
+                found = f"{device.id}::errors::{kind}::TABLE.codes_for"
+                errors = [error for error in device.errors if error.kind == kind]
+                beyond = 1 + max(error.last for error in errors)
+                for number, codes in [(beyond, ()), *(pair for error in errors for pair in codes_by_number(error))]:
+                    shown = json.dumps([str(code) for code in codes])
+                    for reported in {number, number | reported_bits(device) if kind == "device" else number}:
+                        yield f"{found}({reported}).iter().map(|code| code.to_string()).collect::<Vec<_>>()", shown
+
+    expected = dict(probes())
+    assert {0, 1, 2} <= {len(json.loads(shown)) for shown in expected.values()}
+    check(cargo, "responses", crate, iter(expected.items()))
+
+
+def codes_by_number(error: ErrorEntry) -> Iterator[tuple[int, tuple[CodeRef, ...]]]:
+    numbers = range(error.number, error.last + 1)
+    if len(error.adjustable_in) == len(numbers):
+        yield from ((number, (code,)) for number, code in zip(numbers, error.adjustable_in, strict=True))
+    else:
+        yield from ((number, error.adjustable_in) for number in (error.number, error.last))
+
+
+def reported_bits(device: Device) -> int:
+    fields = dict(device.drive.error_fields) if device.drive else {}
+    return sum(fields[name].mask for name in ("response", "instance") if name in fields)
+
+
+def test_messages(cargo: Cargo, crate: Path, model: Model) -> None:
+    """What a program prints to a person."""
+    codes = [
+        (limits(code), f"{device.id}::codes::TABLE.get({code.number}).unwrap()")
+        for device in model.devices
+        for code in device.codes
+    ]
+    (low, high), number = next((bounds, found) for bounds, found in codes if bounds)
+    text = next(found for bounds, found in codes if bounds is None)
+    outside = f"the wire value does not lie within {low} ... {high}"
+    probes = {
+        f"{number}.check({high + 1}).unwrap_err().to_string()": json.dumps(outside),
+        f"{text}.to_wire(0.0).unwrap_err().to_string()": '"the code is a text, not a number"',
+        'format!("{:>8}|", Light::Flash)': '"   flash|"',
+        "CodeRef { number: 7, subcode: None }.to_string()": '"C00007"',
+        "CodeRef { number: 13613, subcode: Some(2) }.to_string()": '"C13613/2"',
+        "ObjectRef { index: 0x1A00, subindex: Some(0) }.to_string()": '"I-1A00/0"',
+    }
+    for cite in (Cite("M", "1.2", 3), Cite("M", "1.2"), Cite("M", UNNAMED, 3), Cite("M", UNNAMED)):
+        made = f'manual: "M", chapter: "{cite.chapter}", page: {option(cite.page)}'
+        probes[f"Cite {{ {made} }}.to_string()"] = f'"{cite}"'
+    check(cargo, "messages", crate, iter(probes.items()))
 
 
 # Switches, LEDs, tables.
@@ -173,6 +257,8 @@ def switch_probes(device: Device) -> Iterator[tuple[str, str]]:
         for on in range(1 << len(group.labels)):
             value = set_value(group, on)
             yield f"{found}.value({on})", option(value)
+            yield f"{found}.value({on | 1 << len(group.labels)})", "None"
+            yield f"{found}.row({on | 1 << len(group.labels)})", "None"
             if value is not None:
                 values.setdefault(value, []).append(on)
         for value, masks in values.items():
@@ -183,8 +269,8 @@ def switch_probes(device: Device) -> Iterator[tuple[str, str]]:
 
 
 def set_value(group: SwitchGroup, on: int) -> int | None:
-    """Value of switches that are ON, number n by bit n."""
-    positions = "".join("1" if on >> switch & 1 else "0" for switch in range(len(group.labels)))
+    """Value of switches that are ON; the mask reads as they are printed."""
+    positions = f"{on:0{len(group.labels)}b}"
     if group.weights:
         value = group.sum(positions)
         return value if group.valid is None or group.valid[0] <= value <= group.valid[1] else None
@@ -199,18 +285,39 @@ def test_indicators(cargo: Cargo, crate: Path, model: Model) -> None:
 
 
 def indicator_probes(device: Device) -> Iterator[tuple[str, str]]:
+    """Each row as it is printed, without its details, and with each LED not looked at."""
+    anything = Pattern(Light.ANY)
     for position, table in enumerate(device.indicators):
         found = f"{device.id}::indicators::TABLES[{position}]"
         for row in table.rows:
-            if all(pattern.light is not Light.ANY for pattern in row.patterns):
-                seen = ", ".join(map(pattern_text, row.patterns))
-                yield f"{found}.state(&[{seen}]).map(|row| row.state)", f"Some({json.dumps(row.state)})"
-        yield f"{found}.state(&[]).is_none()", "true"
-        yield f"{found}.state(&[{unseen(table)}]).is_none()", "true"
+            printed = row.patterns
+            looks = [printed, tuple(Pattern(pattern.light) for pattern in printed), ()]
+            looks += [(*printed[:led], anything, *printed[led + 1 :]) for led in range(len(printed))]
+            for seen in looks:
+                yield from state_probes(found, seen, [other.state for other in table.rows if shows(other, seen)])
+        unseen = tuple(Pattern(Light.FLASH, flashes=99) for _ in table.leds)
+        yield from state_probes(found, unseen, [])
 
 
-def unseen(table: IndicatorTable) -> str:
-    return ", ".join("Pattern { flashes: Some(99), ..Pattern::of(Light::Flash) }" for _ in table.leds)
+def shows(row: IndicatorRow, seen: tuple[Pattern, ...]) -> bool:
+    return len(row.patterns) == len(seen) and all(map(may_be, row.patterns, seen))
+
+
+def may_be(one: Pattern, other: Pattern) -> bool:
+    either = [{Light.ON_OR_FLICKER, light} for light in (Light.ON, Light.FLICKER)]
+    if Light.ANY in (one.light, other.light):
+        return True
+    details = ((getattr(one, name), getattr(other, name)) for name in ("colour", "period", "flashes", "pause"))
+    return (one.light is other.light or {one.light, other.light} in either) and all(
+        None in pair or pair[0] == pair[1] for pair in details
+    )
+
+
+def state_probes(found: str, seen: tuple[Pattern, ...], states: Sequence[str]) -> Iterator[tuple[str, str]]:
+    given = f"&[{', '.join(map(pattern_text, seen))}]"
+    quoted = [json.dumps(state, ensure_ascii=False) for state in states]
+    yield f"{found}.states({given}).map(|row| row.state).collect::<Vec<_>>()", f"[{', '.join(quoted)}]"
+    yield f"{found}.find({given}).map(|row| row.state)", option(quoted[0] if len(quoted) == 1 else None)
 
 
 def pattern_text(pattern: Pattern) -> str:
@@ -224,27 +331,32 @@ def pattern_text(pattern: Pattern) -> str:
 
 
 def test_indicators_of_the_edge_cases(cargo: Cargo, edge: Model) -> None:
-    off, anything = Pattern(Light.OFF), Pattern(Light.FLICKER)
+    off, flicker, anything = Pattern(Light.OFF), Pattern(Light.FLICKER), Pattern(Light.ANY)
     red, green = Pattern(Light.ON, colour="red"), Pattern(Light.ON, colour="green")
     slow, fast = Pattern(Light.BLINK, period=Fraction(1)), Pattern(Light.BLINK, "green", Fraction(1, 8))
     three, two = (Pattern(Light.FLASH, None, None, number, Fraction(5, 4)) for number in (3, 2))
     cases = {
-        (red, off): '"red"',
-        (green, off): None,
-        (red, red): None,
-        (slow, anything): '"slow"',
-        (replace(slow, colour="green"), three): '"slow"',
-        (fast, three): '"fast"',
-        (fast, two): None,
-        (replace(fast, colour=None), three): None,
-        (off, two): '"dark"',
-        (off,): None,
-        (off, off, off): None,
+        (red, off): ["red"],
+        (green, off): [],
+        (red, red): [],
+        (Pattern(Light.ON), off): ["red"],
+        (slow, flicker): ["slow"],
+        (replace(slow, colour="green"), three): ["slow"],
+        (fast, three): ["fast"],
+        (fast, two): [],
+        (fast, anything): ["fast"],
+        (fast, Pattern(Light.FLASH)): ["fast"],
+        (replace(fast, colour=None), three): ["fast"],
+        (Pattern(Light.BLINK), three): ["slow", "fast"],
+        (anything, two): ["slow", "dark"],
+        (anything, anything): ["red", "slow", "fast", "dark"],
+        (off, two): ["dark"],
+        (off,): [],
+        (off, off, off): [],
     }
     crate = cargo.locked("edge-arithmetic", texts(TARGET.render(edge)))
-    found = "edge::indicators::TABLES[0].state(&[{}]).map(|row| row.state)"
-    probes = ((found.format(", ".join(map(pattern_text, seen))), option(state)) for seen, state in cases.items())
-    check(cargo, "edge-indicators", crate, probes)
+    found = "edge::indicators::TABLES[0]"
+    check(cargo, "edge-indicators", crate, (pair for case in cases.items() for pair in state_probes(found, *case)))
 
 
 NUMBERS = {

@@ -403,6 +403,21 @@ def test_comments(model: Model) -> None:
             assert [words for words in told if words not in body] == []
 
 
+def test_comments_say_what_to_try_first(model: Model, edge: Model) -> None:
+    """An abort of SDO is eight bytes as any other message; what has another constant as well is no case of a layout."""
+
+    def cases(model: Model) -> set[tuple[str, str]]:
+        found = set()
+        for path, text in texts(TARGET.render(model)).items():
+            for told, struct in re.findall(r"tried first: (.*)\n(?:///.*\n|#\[.*\n)*pub struct (\w+)", text):
+                found.add((path.removeprefix("src/").removesuffix("/telegrams.rs"), f"{struct}: {told}"))
+        return found
+
+    told = "Sdo: [`SdoError`] (`command` 0x80)"
+    assert cases(model) == {("e94aycca", told), ("servo931", told)}
+    assert cases(edge) == set()
+
+
 def test_refuses_what_has_no_type(model: Model) -> None:
     device = next(device for device in model.devices if device.layouts)
     layout = device.layouts[0]

@@ -74,7 +74,7 @@ class NodeRelative:
     base: int
 
     def at(self, node: int) -> int:
-        """Value for node address ``node`` (1 ... 127)."""
+        """Value for node address ``node``."""
         return self.base + node
 
     def __str__(self) -> str:

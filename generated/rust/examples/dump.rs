@@ -8,8 +8,8 @@
 //! Prints every fact of the crate as a line `path=value`; what is unknown has no line.
 
 use drivespec_devices::types::{
-    Bit, BitField, Choice, Cite, Code, CodeRef, DataType, Device, Drive, Erratum, ErrorTable, IndicatorTable, Manual,
-    NodeRelative, Object, ObjectRef, Range, SwitchGroup, Value,
+    Bit, BitField, Choice, Cite, Code, DataType, Device, Drive, Erratum, ErrorTable, IndicatorTable, Manual,
+    NodeRelative, Object, Range, SwitchGroup, Value,
 };
 use drivespec_devices::DEVICES;
 use std::fmt::Display;
@@ -117,7 +117,7 @@ fn dump_code(path: &str, code: &Code) {
     fact(path, "name", code.name);
     fact(path, "index", code.index);
     fact(path, "type_name", code.type_name);
-    fact(path, "data_type", code.data_type.as_str());
+    fact(path, "data_type", code.data_type);
     known(path, "length", code.length);
     fact(path, "read", code.access.read);
     fact(path, "write", code.access.write);
@@ -135,36 +135,36 @@ fn dump_code(path: &str, code: &Code) {
         known(&path, "follows", subcode.follows.map(relative));
         choices(&format!("{path}/option"), subcode.choices);
     }
-    list(path, "object", code.objects.iter().map(object_ref));
+    list(path, "object", code.objects);
     known(path, "since", code.since);
     fact(path, "internal", code.internal);
     known(path, "shared_by", code.shared_by);
-    fact(path, "origin", code.origin.as_str());
+    fact(path, "origin", code.origin);
     cite(path, code.cite);
     list(path, "erratum", code.errata);
 }
 
 fn dump_object(path: &str, object: &Object) {
     fact(path, "name", object.name);
-    fact(path, "object_type", object.object_type.as_str());
+    fact(path, "object_type", object.object_type);
     for entry in object.subindexes {
         let path = format!("{path}/subindex/{}", entry.number);
         fact(&path, "name", entry.name);
-        fact(&path, "data_type", entry.data_type.as_str());
-        fact(&path, "access", entry.access.as_str());
+        fact(&path, "data_type", entry.data_type);
+        fact(&path, "access", entry.access);
         default(&path, entry.default);
         range(&path, entry.range);
         choices(&format!("{path}/option"), entry.choices);
         bits(&path, entry.bits);
         fields(&path, entry.fields);
-        list(&path, "code", entry.codes.iter().map(code_ref));
+        list(&path, "code", entry.codes);
         known(&path, "signature", entry.signature);
         fact(&path, "pdo_mapping", entry.pdo_mapping);
         fact(&path, "unused", entry.unused);
         known(&path, "abort", entry.abort);
         list(&path, "erratum", entry.errata);
     }
-    fact(path, "origin", object.origin.as_str());
+    fact(path, "origin", object.origin);
     cite(path, object.cite);
     list(path, "erratum", object.errata);
 }
@@ -178,13 +178,13 @@ fn dump_errors(path: &str, table: &ErrorTable) {
         fact(&path, "name", entry.name);
         known(&path, "response", entry.response);
         list(&path, "response", entry.responses);
-        list(&path, "adjustable_in", entry.adjustable_in.iter().map(code_ref));
+        list(&path, "adjustable_in", entry.adjustable_in);
         known(&path, "register", entry.register);
         if let Some(help) = table.help(entry.number) {
             list(&path, "cause", help.causes);
             list(&path, "remedy", help.remedies);
         }
-        fact(&path, "origin", entry.origin.as_str());
+        fact(&path, "origin", entry.origin);
         cite(&path, entry.cite);
         list(&path, "erratum", entry.errata);
     }
@@ -202,7 +202,7 @@ fn dump_indicators(path: &str, table: &IndicatorTable) {
         let path = format!("{path}/row/{position}");
         for (position, pattern) in row.patterns.iter().enumerate() {
             let path = format!("{path}/pattern/{position}");
-            fact(&path, "light", pattern.light.as_str());
+            fact(&path, "light", pattern.light);
             known(&path, "colour", pattern.colour);
             known(&path, "period", pattern.period);
             known(&path, "flashes", pattern.flashes);
@@ -210,7 +210,7 @@ fn dump_indicators(path: &str, table: &IndicatorTable) {
         }
         fact(&path, "state", row.state);
         fact(&path, "meaning", row.meaning);
-        fact(&path, "origin", row.origin.as_str());
+        fact(&path, "origin", row.origin);
         cite(&path, row.cite);
     }
     cite(path, table.cite);
@@ -225,7 +225,7 @@ fn dump_switches(path: &str, group: &SwitchGroup) {
         list(path, "valid", [first, last]);
     }
     fact(path, "unit", group.unit);
-    list(path, "sets", group.sets.iter().map(code_ref));
+    list(path, "sets", group.sets);
     for (position, row) in group.rows.iter().enumerate() {
         let path = format!("{path}/row/{position}");
         fact(&path, "value", row.value);
@@ -234,7 +234,7 @@ fn dump_switches(path: &str, group: &SwitchGroup) {
         fact(&path, "either", row.either);
     }
     list(path, "note", group.notes);
-    fact(path, "origin", group.origin.as_str());
+    fact(path, "origin", group.origin);
     cite(path, group.cite);
     list(path, "erratum", group.errata);
 }
@@ -299,19 +299,5 @@ fn bits(path: &str, bits: &[Bit]) {
 fn fields(path: &str, fields: &[BitField]) {
     for field in fields {
         fact(path, &format!("field/{}...{}", field.low, field.high), field.label);
-    }
-}
-
-fn code_ref(code: &CodeRef) -> String {
-    match code.subcode {
-        Some(subcode) => format!("C{:05}/{subcode}", code.number),
-        None => format!("C{:05}", code.number),
-    }
-}
-
-fn object_ref(object: &ObjectRef) -> String {
-    match object.subindex {
-        Some(subindex) => format!("I-{:04X}/{subindex}", object.index),
-        None => format!("I-{:04X}", object.index),
     }
 }

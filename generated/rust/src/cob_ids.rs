@@ -12,121 +12,90 @@ use crate::types::*;
 /// NMT.
 ///
 /// - Source: CiA-301-4.02, 9.4, from the standard
-pub const NMT: CobId = CobId { name: "NMT", id: NodeRelative { base: 0x000 }, objects: &[] };
+pub const NMT: CobId = CobId { name: "NMT", base: 0x000, broadcast: true, objects: &[] };
 
 /// SYNC.
 ///
 /// - Source: CiA-301-4.02, 9.4, from the standard
 pub const SYNC: CobId =
-    CobId { name: "SYNC", id: NodeRelative { base: 0x080 }, objects: &[ObjectRef { index: 0x1005, subindex: None }] };
+    CobId { name: "SYNC", base: 0x080, broadcast: true, objects: &[ObjectRef { index: 0x1005, subindex: None }] };
 
 /// EMCY.
 ///
 /// - Source: CiA-301-4.02, 9.4, from the standard
 pub const EMCY: CobId =
-    CobId { name: "EMCY", id: NodeRelative { base: 0x080 }, objects: &[ObjectRef { index: 0x1014, subindex: None }] };
+    CobId { name: "EMCY", base: 0x080, broadcast: false, objects: &[ObjectRef { index: 0x1014, subindex: None }] };
 
 /// TIME.
 ///
 /// - Source: CiA-301-4.02, 9.4, from the standard
 pub const TIME: CobId =
-    CobId { name: "TIME", id: NodeRelative { base: 0x100 }, objects: &[ObjectRef { index: 0x1012, subindex: None }] };
+    CobId { name: "TIME", base: 0x100, broadcast: true, objects: &[ObjectRef { index: 0x1012, subindex: None }] };
 
 /// TPDO1.
 ///
 /// - Source: CiA-301-4.02, 9.4, from the standard
-pub const TPDO1: CobId = CobId {
-    name: "TPDO1",
-    id: NodeRelative { base: 0x180 },
-    objects: &[ObjectRef { index: 0x1800, subindex: Some(1) }],
-};
+pub const TPDO1: CobId =
+    CobId { name: "TPDO1", base: 0x180, broadcast: false, objects: &[ObjectRef { index: 0x1800, subindex: Some(1) }] };
 
 /// RPDO1.
 ///
 /// - Source: CiA-301-4.02, 9.4, from the standard
-pub const RPDO1: CobId = CobId {
-    name: "RPDO1",
-    id: NodeRelative { base: 0x200 },
-    objects: &[ObjectRef { index: 0x1400, subindex: Some(1) }],
-};
+pub const RPDO1: CobId =
+    CobId { name: "RPDO1", base: 0x200, broadcast: false, objects: &[ObjectRef { index: 0x1400, subindex: Some(1) }] };
 
 /// TPDO2.
 ///
 /// - Source: CiA-301-4.02, 9.4, from the standard
-pub const TPDO2: CobId = CobId {
-    name: "TPDO2",
-    id: NodeRelative { base: 0x280 },
-    objects: &[ObjectRef { index: 0x1801, subindex: Some(1) }],
-};
+pub const TPDO2: CobId =
+    CobId { name: "TPDO2", base: 0x280, broadcast: false, objects: &[ObjectRef { index: 0x1801, subindex: Some(1) }] };
 
 /// RPDO2.
 ///
 /// - Source: CiA-301-4.02, 9.4, from the standard
-pub const RPDO2: CobId = CobId {
-    name: "RPDO2",
-    id: NodeRelative { base: 0x300 },
-    objects: &[ObjectRef { index: 0x1401, subindex: Some(1) }],
-};
+pub const RPDO2: CobId =
+    CobId { name: "RPDO2", base: 0x300, broadcast: false, objects: &[ObjectRef { index: 0x1401, subindex: Some(1) }] };
 
 /// TPDO3.
 ///
 /// - Source: CiA-301-4.02, 9.4, from the standard
-pub const TPDO3: CobId = CobId {
-    name: "TPDO3",
-    id: NodeRelative { base: 0x380 },
-    objects: &[ObjectRef { index: 0x1802, subindex: Some(1) }],
-};
+pub const TPDO3: CobId =
+    CobId { name: "TPDO3", base: 0x380, broadcast: false, objects: &[ObjectRef { index: 0x1802, subindex: Some(1) }] };
 
 /// RPDO3.
 ///
 /// - Source: CiA-301-4.02, 9.4, from the standard
-pub const RPDO3: CobId = CobId {
-    name: "RPDO3",
-    id: NodeRelative { base: 0x400 },
-    objects: &[ObjectRef { index: 0x1402, subindex: Some(1) }],
-};
+pub const RPDO3: CobId =
+    CobId { name: "RPDO3", base: 0x400, broadcast: false, objects: &[ObjectRef { index: 0x1402, subindex: Some(1) }] };
 
 /// TPDO4.
 ///
 /// - Source: CiA-301-4.02, 9.4, from the standard
-pub const TPDO4: CobId = CobId {
-    name: "TPDO4",
-    id: NodeRelative { base: 0x480 },
-    objects: &[ObjectRef { index: 0x1803, subindex: Some(1) }],
-};
+pub const TPDO4: CobId =
+    CobId { name: "TPDO4", base: 0x480, broadcast: false, objects: &[ObjectRef { index: 0x1803, subindex: Some(1) }] };
 
 /// RPDO4.
 ///
 /// - Source: CiA-301-4.02, 9.4, from the standard
-pub const RPDO4: CobId = CobId {
-    name: "RPDO4",
-    id: NodeRelative { base: 0x500 },
-    objects: &[ObjectRef { index: 0x1403, subindex: Some(1) }],
-};
+pub const RPDO4: CobId =
+    CobId { name: "RPDO4", base: 0x500, broadcast: false, objects: &[ObjectRef { index: 0x1403, subindex: Some(1) }] };
 
 /// SDO tx.
 ///
 /// - Source: CiA-301-4.02, 9.4, from the standard
-pub const SDO_TX: CobId = CobId {
-    name: "SDO tx",
-    id: NodeRelative { base: 0x580 },
-    objects: &[ObjectRef { index: 0x1200, subindex: Some(2) }],
-};
+pub const SDO_TX: CobId =
+    CobId { name: "SDO tx", base: 0x580, broadcast: false, objects: &[ObjectRef { index: 0x1200, subindex: Some(2) }] };
 
 /// SDO rx.
 ///
 /// - Source: CiA-301-4.02, 9.4, from the standard
-pub const SDO_RX: CobId = CobId {
-    name: "SDO rx",
-    id: NodeRelative { base: 0x600 },
-    objects: &[ObjectRef { index: 0x1200, subindex: Some(1) }],
-};
+pub const SDO_RX: CobId =
+    CobId { name: "SDO rx", base: 0x600, broadcast: false, objects: &[ObjectRef { index: 0x1200, subindex: Some(1) }] };
 
 /// NMT error control.
 ///
 /// - Source: CiA-301-4.02, 9.4, from the standard
-pub const NMT_ERROR_CONTROL: CobId =
-    CobId { name: "NMT error control", id: NodeRelative { base: 0x700 }, objects: &[] };
+pub const NMT_ERROR_CONTROL: CobId = CobId { name: "NMT error control", base: 0x700, broadcast: false, objects: &[] };
 
 /// All entries.
 pub const TABLE: &[CobId] =

@@ -83,6 +83,12 @@ impl DataType {
     }
 }
 
+impl fmt::Display for DataType {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.pad(self.as_str())
+    }
+}
+
 /// How a fact came to be known.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -120,6 +126,12 @@ impl Origin {
             Self::Assumed => "assumed",
             Self::Public => "public",
         }
+    }
+}
+
+impl fmt::Display for Origin {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.pad(self.as_str())
     }
 }
 
@@ -172,6 +184,12 @@ impl Light {
     }
 }
 
+impl fmt::Display for Light {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.pad(self.as_str())
+    }
+}
+
 /// List that an object belongs to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -197,6 +215,12 @@ impl ObjectKind {
             Self::CanOpen => "canopen",
             Self::Profidrive => "profidrive",
         }
+    }
+}
+
+impl fmt::Display for ObjectKind {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.pad(self.as_str())
     }
 }
 
@@ -229,6 +253,12 @@ impl ObjectType {
             Self::Array => "ARRAY",
             Self::Record => "RECORD",
         }
+    }
+}
+
+impl fmt::Display for ObjectType {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.pad(self.as_str())
     }
 }
 
@@ -273,6 +303,12 @@ impl EntryAccess {
             Self::Rwr => "rwr",
             Self::Rww => "rww",
         }
+    }
+}
+
+impl fmt::Display for EntryAccess {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.pad(self.as_str())
     }
 }
 
@@ -348,16 +384,22 @@ impl<T: fmt::Display> fmt::Display for UnknownValue<T> {
 #[cfg(feature = "std")]
 impl<T: fmt::Debug + fmt::Display> std::error::Error for UnknownValue<T> {}
 
-/// A value that a code cannot take.
+/// A value that a code cannot take, or that its data type does not hold.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
-pub struct OutOfRange;
+pub struct OutOfRange {
+    /// Lowest and highest wire value that would do; `None` where no number does, for the code is a text.
+    pub limits: Option<(i64, i64)>,
+}
 
 impl fmt::Display for OutOfRange {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        formatter.write_str("the code cannot take this value")
+        match self.limits {
+            Some((low, high)) => write!(formatter, "the wire value does not lie within {low} ... {high}"),
+            None => formatter.write_str("the code is a text, not a number"),
+        }
     }
 }
 
@@ -371,10 +413,22 @@ impl std::error::Error for OutOfRange {}
 pub struct Cite {
     /// Id of the manual, for example of [`Manual::id`].
     pub manual: &'static str,
-    /// Chapter as printed.
+    /// Chapter as printed, `X` where the source names none.
     pub chapter: &'static str,
     /// Page as printed, `None` where unknown.
     pub page: Option<u16>,
+}
+
+impl fmt::Display for Cite {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.write_str(self.manual)?;
+        match (self.chapter, self.page) {
+            ("X", None) => Ok(()),
+            ("X", Some(page)) => write!(formatter, ", p. {page}"),
+            (chapter, None) => write!(formatter, ", {chapter}"),
+            (chapter, Some(page)) => write!(formatter, ", {chapter} p. {page}"),
+        }
+    }
 }
 
 /// A manual that facts were taken from.
@@ -448,14 +502,17 @@ impl BitField {
 
     /// Number that the field holds in `value`.
     #[must_use]
-    pub const fn extract(self, value: u32) -> u32 {
+    pub const fn get(self, value: u32) -> u32 {
         (value & self.mask()) >> self.low
     }
 
-    /// `value` with `number` in the field; bits of `number` that the field has no room for are dropped.
+    /// `value` with `number` in the field; `None` where `number` does not fit into it.
     #[must_use]
-    pub const fn insert(self, value: u32, number: u32) -> u32 {
-        (value & !self.mask()) | ((number << self.low) & self.mask())
+    pub const fn put(self, value: u32, number: u32) -> Option<u32> {
+        if number > self.mask() >> self.low {
+            return None;
+        }
+        Some(value & !self.mask() | number << self.low)
     }
 }
 
@@ -490,10 +547,13 @@ pub struct NodeRelative {
 }
 
 impl NodeRelative {
-    /// Value for the node address `node`.
+    /// Value for the node address `node`; `None` where there is no such address.
     #[must_use]
-    pub const fn at(self, node: u8) -> u32 {
-        self.base + node as u32
+    pub const fn at(self, node: u8) -> Option<u32> {
+        match node {
+            1..=127 => Some(self.base + node as u32),
+            _ => None,
+        }
     }
 
     /// Node address whose value this is, `None` where no address gives it.
@@ -522,19 +582,22 @@ pub enum Value {
 }
 
 impl Value {
-    /// Wire value for the node address `node`; `None` for a text.
+    /// Wire value for the node address `node`; `None` for a text, and for a rule where there is no such address.
     #[must_use]
     pub const fn at(self, node: u8) -> Option<i64> {
         match self {
             Self::Number(number) => Some(number),
             Self::Text(_) => None,
-            Self::NodeRelative(rule) => Some(rule.at(node) as i64),
+            Self::NodeRelative(rule) => match rule.at(node) {
+                Some(number) => Some(number as i64),
+                None => None,
+            },
         }
     }
 }
 
 /// A code, or one subcode of it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct CodeRef {
@@ -544,8 +607,16 @@ pub struct CodeRef {
     pub subcode: Option<u8>,
 }
 
+impl fmt::Display for CodeRef {
+    /// As the manuals write it.
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(formatter, "C{:05}", self.number)?;
+        self.subcode.map_or(Ok(()), |subcode| write!(formatter, "/{subcode}"))
+    }
+}
+
 /// An object of the object dictionary, or one sub-index of it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct ObjectRef {
@@ -553,6 +624,14 @@ pub struct ObjectRef {
     pub index: u16,
     /// Sub-index, `None` for the whole object.
     pub subindex: Option<u8>,
+}
+
+impl fmt::Display for ObjectRef {
+    /// As the manuals write it.
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(formatter, "I-{:04X}", self.index)?;
+        self.subindex.map_or(Ok(()), |subindex| write!(formatter, "/{subindex}"))
+    }
 }
 
 /// What may be done with a code.
@@ -684,37 +763,61 @@ impl Code {
         None
     }
 
-    /// `raw` where it lies in the range and fits the data type.
+    /// Lowest and highest wire value that the code takes, within its range and its data type; `None` for a text.
+    #[must_use]
+    pub fn limits(&self) -> Option<(i64, i64)> {
+        let (low, high) = self.data_type.limits()?;
+        Some(self.range.map_or((low, high), |range| (range.low.max(low), range.high.min(high))))
+    }
+
+    /// `raw` where it lies within the [`limits`](Self::limits).
     ///
     /// # Errors
     ///
     /// The code cannot take the value, or is a text.
     pub fn check(&self, raw: i64) -> Result<i64, OutOfRange> {
-        let (low, high) = self.data_type.limits().ok_or(OutOfRange)?;
-        let inside = low <= raw && raw <= high && self.range.map_or(true, |range| range.contains(raw));
-        inside.then_some(raw).ok_or(OutOfRange)
+        within(self.limits(), raw)
     }
 
     /// Wire value of a physical value: times the scaling factor, rounded to the nearest number, halves away from 0.
     ///
     /// # Errors
     ///
-    /// The code cannot take the value, or is a text.
-    pub fn wire(&self, physical: f64) -> Result<i64, OutOfRange> {
-        let scaled = physical * f64::from(self.scaling.unwrap_or(1));
-        let bound = i64::MAX as f64;
-        if scaled.is_nan() || scaled <= -bound || scaled >= bound {
-            return Err(OutOfRange);
+    /// The value as it is given lies outside the [`limits`](Self::limits), or the code is a text.
+    pub fn to_wire(&self, physical: f64) -> Result<i64, OutOfRange> {
+        let limits = self.limits();
+        let (low, high) = limits.ok_or(OutOfRange { limits })?;
+        if !(self.unscaled(low)..=self.unscaled(high)).contains(&physical) {
+            return Err(OutOfRange { limits });
         }
+        let scaled = physical * self.factor();
         let whole = scaled as i64;
         let rest = scaled - whole as f64;
         self.check(whole + i64::from(rest >= 0.5) - i64::from(rest <= -0.5))
     }
 
-    /// Physical value of a wire value: divided by the scaling factor.
-    #[must_use]
-    pub fn physical(&self, raw: i64) -> f64 {
-        raw as f64 / f64::from(self.scaling.unwrap_or(1))
+    /// Physical value of a wire value: divided by the scaling factor; it may lie outside the range.
+    ///
+    /// # Errors
+    ///
+    /// The data type does not hold the value, or the code is a text.
+    pub fn from_wire(&self, raw: i64) -> Result<f64, OutOfRange> {
+        within(self.data_type.limits(), raw).map(|raw| self.unscaled(raw))
+    }
+
+    fn factor(&self) -> f64 {
+        f64::from(self.scaling.unwrap_or(1))
+    }
+
+    fn unscaled(&self, raw: i64) -> f64 {
+        raw as f64 / self.factor()
+    }
+}
+
+fn within(limits: Option<(i64, i64)>, raw: i64) -> Result<i64, OutOfRange> {
+    match limits {
+        Some((low, high)) if low <= raw && raw <= high => Ok(raw),
+        _ => Err(OutOfRange { limits }),
     }
 }
 
@@ -831,7 +934,8 @@ pub struct ErrorEntry {
     pub response: Option<&'static str>,
     /// Responses that can be selected.
     pub responses: &'static [&'static str],
-    /// Codes that set the response; of a run one for each number.
+    /// Codes that set the response: as many as numbers are one for each, else they are alternatives, one for each slot.
+    /// [`ErrorTable::codes_for`] chooses.
     pub adjustable_in: &'static [CodeRef],
     /// Value of the error register that goes with it, as printed.
     pub register: Option<&'static str>,
@@ -1047,16 +1151,22 @@ impl Pattern {
         Self { light, colour: None, period: None, flashes: None, pause: None }
     }
 
-    /// Whether `seen` shows this pattern; what the manual does not print does not matter.
+    /// Whether both may be the same; what one of them does not say can be anything.
     #[must_use]
-    pub fn shows(&self, seen: &Self) -> bool {
-        self.light == Light::Any
-            || ((self.light == seen.light
-                || self.light == Light::OnOrFlicker && matches!(seen.light, Light::On | Light::Flicker))
-                && (self.colour.is_none() || self.colour == seen.colour)
-                && (self.period.is_none() || self.period == seen.period)
-                && (self.flashes.is_none() || self.flashes == seen.flashes)
-                && (self.pause.is_none() || self.pause == seen.pause))
+    pub fn fits(&self, other: &Self) -> bool {
+        fn may_be<T: PartialEq>(one: Option<T>, other: Option<T>) -> bool {
+            one.is_none() || other.is_none() || one == other
+        }
+        match (self.light, other.light) {
+            (Light::Any, _) | (_, Light::Any) => return true,
+            (Light::OnOrFlicker, Light::On | Light::Flicker) | (Light::On | Light::Flicker, Light::OnOrFlicker) => {}
+            (one, other) if one == other => {}
+            _ => return false,
+        }
+        may_be(self.colour, other.colour)
+            && may_be(self.period, other.period)
+            && may_be(self.flashes, other.flashes)
+            && may_be(self.pause, other.pause)
     }
 }
 
@@ -1097,17 +1207,22 @@ pub struct IndicatorTable {
 }
 
 impl IndicatorTable {
-    /// State that the LEDs show; `seen` holds one pattern for each LED.
+    /// Rows that fit what is seen, in their order; `seen` holds one pattern for each LED, if need be [`Light::Any`].
+    pub fn states<'a>(&self, seen: &'a [Pattern]) -> impl Iterator<Item = &'static IndicatorRow> + 'a {
+        self.rows.iter().filter(move |row| {
+            row.patterns.len() == seen.len() && row.patterns.iter().zip(seen).all(|(pattern, seen)| pattern.fits(seen))
+        })
+    }
+
+    /// The row that fits what is seen, `None` where none does or several do.
     #[must_use]
-    pub fn state(&self, seen: &[Pattern]) -> Option<&'static IndicatorRow> {
-        if seen.len() != self.leds.len() {
-            return None;
-        }
-        self.rows.iter().find(|row| row.patterns.iter().zip(seen).all(|(pattern, seen)| pattern.shows(seen)))
+    pub fn find(&self, seen: &[Pattern]) -> Option<&'static IndicatorRow> {
+        let mut states = self.states(seen);
+        states.next().filter(|_| states.next().is_none())
     }
 }
 
-/// A printed position of DIP switches; bit n of a mask is switch n of [`SwitchGroup::labels`].
+/// A printed position of DIP switches; a mask reads as printed, its bit 0 is the last of [`SwitchGroup::labels`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
@@ -1122,7 +1237,7 @@ pub struct SwitchRow {
     pub either: u32,
 }
 
-/// DIP switches that set one thing; bit n of a mask is switch n of `labels`.
+/// DIP switches that set one thing; a mask of them reads as printed, its bit 0 is the last of `labels`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
@@ -1160,13 +1275,16 @@ impl SwitchGroup {
         self.rows.iter().find(|row| row.on == on & !row.either)
     }
 
-    /// Value of a position, `None` where it sets no number.
+    /// Value of a position, `None` where it sets no number or has bits that are no switches.
     #[must_use]
     pub fn value(&self, on: u32) -> Option<u32> {
         if self.weights.is_empty() {
             return self.row(on)?.number;
         }
-        let weights = self.weights.iter().enumerate();
+        if on >> self.weights.len() != 0 {
+            return None;
+        }
+        let weights = self.weights.iter().rev().enumerate();
         let sum = weights.filter(|(switch, _)| on >> switch & 1 == 1).map(|(_, weight)| weight).sum();
         self.is_valid(sum).then_some(sum)
     }
@@ -1193,10 +1311,32 @@ impl SwitchGroup {
 pub struct CobId {
     /// Name.
     pub name: &'static str,
-    /// COB-ID by node address.
-    pub id: NodeRelative,
+    /// The COB-ID of a broadcast, else what the node address is added to.
+    pub base: u32,
+    /// Whether the COB-ID is the same for all nodes.
+    pub broadcast: bool,
     /// Objects that hold it.
     pub objects: &'static [ObjectRef],
+}
+
+impl CobId {
+    /// COB-ID for the node address `node`, of a broadcast the same for any; `None` where there is no such address.
+    #[must_use]
+    pub const fn at(self, node: u8) -> Option<u32> {
+        if self.broadcast {
+            return Some(self.base);
+        }
+        NodeRelative { base: self.base }.at(node)
+    }
+
+    /// Node address that a COB-ID belongs to; `None` where no address gives it, and for a broadcast.
+    #[must_use]
+    pub const fn node(self, cob_id: u32) -> Option<u8> {
+        if self.broadcast {
+            return None;
+        }
+        NodeRelative { base: self.base }.node(cob_id)
+    }
 }
 
 /// A device with everything that its manual says.
@@ -1306,10 +1446,11 @@ impl CodeTable {
         self.index_base.checked_sub(index).and_then(|number| self.get(number))
     }
 
-    /// Code of that name, of that slot alone where one is given.
+    /// First code of that name, where a slot is given of those in it; a code without slot is in each.
     #[must_use]
     pub fn find(&self, name: &str, slot: Option<&str>) -> Option<&'static Code> {
-        self.entries.iter().find(|code| code.name == name && (slot.is_none() || code.slot == slot))
+        let is_in = |code: &Code| slot.is_none() || code.slot.is_none() || code.slot == slot;
+        self.entries.iter().find(|code| code.name == name && is_in(code))
     }
 
     /// All codes.
@@ -1507,6 +1648,21 @@ impl ErrorTable {
     #[must_use]
     pub fn get(&self, number: u32) -> Option<&'static ErrorEntry> {
         self.position(number).map(|position| &self.entries[position])
+    }
+
+    /// Codes that set the response to a number as the device reports it: none, one, or one for each slot.
+    #[must_use]
+    pub fn codes_for(&self, number: u32) -> &'static [CodeRef] {
+        let Some(entry) = self.get(number) else {
+            return &[];
+        };
+        let (place, last) = ((number & self.mask) - entry.number, entry.last - entry.number);
+        let codes = entry.adjustable_in;
+        if codes.len().checked_sub(1) == Some(last as usize) {
+            core::slice::from_ref(&codes[place as usize])
+        } else {
+            codes
+        }
     }
 
     /// Causes and remedies of a number as the device reports it.

@@ -2,7 +2,6 @@
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from itertools import pairwise
 
 from generator.emit.c.prose import cited, provenance
 from generator.emit.c.syntax import comment, integer
@@ -92,7 +91,7 @@ def common_header(model: Model, names: Names) -> CommonHeader:
     drives = tuple(_drive_view(drive, names) for drive in model.drives)
     types = tuple(_type_view(data_type) for data_type in DataType if data_type.is_number)
     brief = "Types and facts that several drives share."
-    return CommonHeader("drivespec.h", guard, brief, notes, tuple(sections), drives, types, bool(model.cob_ids))
+    return CommonHeader("drivespec.h", guard, brief, notes, tuple(sections), drives, types, bool(model.node_addresses))
 
 
 def _drive_view(drive: Drive, names: Names) -> DriveView:
@@ -194,12 +193,8 @@ def _connection_set(model: Model, names: Names) -> Section:
         else:
             text = f"{entry.name}{objects}, COB-ID less the node address"
             writer.number(f"{name}_BASE", entry.base, text, hexadecimal=True)
-    writer.number("NODE_MAX", _highest_node(model), "highest node address: COB-IDs stay below the next base", 8)
+    if model.node_addresses:
+        writer.number("NODE_MIN", model.node_addresses[0], "lowest node address", 8)
+        writer.number("NODE_MAX", model.node_addresses[-1], "highest node address", 8)
     cites = dict.fromkeys(cited(entry.cite) for entry in model.cob_ids)
     return writer.section("Predefined connection set", ["A base takes the node address: drivespec_at_node.", *cites])
-
-
-def _highest_node(model: Model) -> int:
-    """Highest node address for which no COB-ID runs into the next."""
-    bases = sorted({entry.base for entry in model.cob_ids})
-    return min(after - before for before, after in pairwise(bases)) - 1

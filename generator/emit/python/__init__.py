@@ -71,7 +71,11 @@ def render(model: Model) -> dict[str, Output]:
     types = [TypeView(t.canopen_name, f"0x{t.canopen_number:04X}", t.bits, t.signed) for t in DataType]
     shared = {"head": head, "devices": devices, "examples": examples, "data_types": types}
     shared |= {"records": RECORDS, "panels": PANELS, "lights": [light.value for light in Light], "exports": EXPORTS}
-    shared |= {"colours": colours(model), "cob_ids": list(map(_cob_id, model.cob_ids))}
+    shared |= {
+        "colours": colours(model),
+        "cob_ids": list(map(_cob_id, model.cob_ids)),
+        "nodes": model.node_addresses or range(1),
+    }
 
     files = {
         "pyproject.toml": Output(fill_template("python/pyproject.toml.j2", **shared)),

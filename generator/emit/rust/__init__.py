@@ -18,6 +18,7 @@ from generator.emit.rust.notice import notice
 from generator.emit.rust.syntax import array, constant_name, declaration, doc, hexadecimal, string, type_name
 from generator.emit.rust.views import DataTypeFigures, Module, Record, TypeEnum, TypeVariant
 from generator.model import DataType, Light, Model, Origin
+from generator.model.citation import UNNAMED
 from generator.naming import Scope, safe, snake
 
 _OWN_MODULES = ("cob_ids", "codec", "default", "defmt", "drives", "formats", "macros", "serde", "std", "types")
@@ -114,7 +115,7 @@ def _crate_files(
         "src/codec.rs": fill("rust/codec.rs.j2", notice=head),
         "src/formats.rs": fill("rust/formats.rs.j2", notice=head),
         "src/macros.rs": fill("rust/macros.rs.j2", notice=head),
-        "src/types.rs": _types(head),
+        "src/types.rs": _types(head, model.node_addresses),
         "src/drives.rs": fill("rust/drives.rs.j2", notice=head, drives=sorted(map(drive_module, model.drives))),
     }
 
@@ -134,7 +135,7 @@ def _cob_ids(model: Model, head: str) -> str:
     return fill("rust/cob_ids.rs.j2", notice=head, records=records, table=table)
 
 
-def _types(head: str) -> str:
+def _types(head: str, nodes: range) -> str:
     names = {data_type: type_name(data_type.canopen_name) for data_type in DataType}
     enums = [
         _enum(
@@ -172,6 +173,8 @@ def _types(head: str) -> str:
         "rust/types.rs.j2",
         notice=head,
         enums=enums,
+        nodes=nodes or range(1),
+        unnamed=UNNAMED,
         data_types=[DataTypeFigures(name, hexadecimal(t.canopen_number, 4), t.bits) for t, name in names.items()],
         signed=" | ".join(f"Self::{name}" for t, name in names.items() if t.signed),
     )

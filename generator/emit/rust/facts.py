@@ -297,20 +297,19 @@ def switches(value: SwitchGroup) -> Expression:
 
 
 def _switch_row(value: SwitchRow) -> Expression:
-    digits = (len(value.positions) + 3) // 4
     return struct(
         "SwitchRow",
         [
             ("value", string(value.value)),
             ("number", number(int(value.value) if value.value.isdecimal() else None)),
-            ("on", hexadecimal(_switch_mask(value, "1"), digits)),
-            ("either", hexadecimal(_switch_mask(value, "x"), digits)),
+            ("on", _switch_mask(value, "1")),
+            ("either", _switch_mask(value, "x")),
         ],
     )
 
 
-def _switch_mask(value: SwitchRow, position: str) -> int:
-    return sum(1 << switch for switch, found in enumerate(value.positions) if found == position)
+def _switch_mask(value: SwitchRow, position: str) -> str:
+    return "0b" + "".join(str(int(found == position)) for found in value.positions)
 
 
 def cob_id(value: CobId) -> Expression:
@@ -319,7 +318,8 @@ def cob_id(value: CobId) -> Expression:
         "CobId",
         [
             ("name", string(value.name)),
-            ("id", node_relative(NodeRelative(value.base))),
+            ("base", hexadecimal(value.base, 3)),
+            ("broadcast", boolean(value.broadcast)),
             ("objects", array(map(object_ref, value.objects))),
         ],
     )

@@ -1,6 +1,6 @@
 """Telegrams of a device: a struct for each layout, and the code that takes it from bytes and puts it into bytes."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 
 from generator.emit import names
 from generator.emit.base import EmitError
@@ -40,7 +40,7 @@ class Telegrams:
         for entry in device.layouts:
             comment = doc(
                 [words.headline(entry.name), markdown(entry.description)],
-                words.layout_points(entry, self._explained(entry)),
+                words.layout_points(entry, _cases(entry, device.layouts), self._explained(entry)),
             )
             self._add(telegram_name(entry), entry.fields, comment, entry.where, True)
 
@@ -207,6 +207,31 @@ def _lifetime(fields: Iterable[Field]) -> str:
 def _fixed_size(fields: Sequence[Field]) -> str:
     lengths = [field.length for field in fields if isinstance(field.length, int)]
     return str(sum(lengths)) if len(lengths) == len(fields) else ""
+
+
+def _cases(entry: Layout, layouts: Iterable[Layout]) -> list[str]:
+    """Markup of the layouts that are ``entry`` with more of its fields constant, and of these constants."""
+    size, places, own = _fixed_size(entry.fields), dict(_places(entry.fields)), _constant_places(entry.fields)
+    alike = [other for other in layouts if other.protocol == entry.protocol and _fixed_size(other.fields) == size != ""]
+    found = []
+    for other in alike:
+        theirs = _constant_places(other.fields)
+        if theirs.items() > own.items() and theirs.keys() <= places.keys():
+            more = ", ".join(f"`{place[1]}` 0x{theirs[place]:02X}" for place in theirs if place not in own)
+            found.append(f"[`{telegram_name(other)}`] ({more})")
+    return found
+
+
+def _constant_places(fields: Sequence[Field]) -> dict[tuple[int, str], int]:
+    return {place: value for place, value in _places(fields) if value is not None}
+
+
+def _places(fields: Sequence[Field]) -> Iterator[tuple[tuple[int, str], int | None]]:
+    """First byte, name and constant of each field of a layout without open lengths."""
+    place = 0
+    for field in fields:
+        yield (place, field.name), field.constant
+        place += field.length if isinstance(field.length, int) else 0
 
 
 def _free(name: str, taken: set[str]) -> str:

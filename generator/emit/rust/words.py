@@ -159,10 +159,11 @@ def error_points(error: ErrorEntry, digits: int, errata: Iterable[Erratum]) -> l
     ]
 
 
-def layout_points(layout: Layout, errata: Iterable[Erratum]) -> list[str]:
-    """What the comment of a telegram lists."""
+def layout_points(layout: Layout, cases: Sequence[str], errata: Iterable[Erratum]) -> list[str]:
+    """What the comment of a telegram lists; ``cases`` are the layouts, as markup, whose bytes it decodes as well."""
     return [
         f"Protocol: {markdown(layout.protocol)}",
+        f"Decodes these as well, which are to be tried first: {', '.join(cases)}" if cases else "",
         source(layout.cite, layout.origin),
         *map(_erratum, errata),
     ]

@@ -198,7 +198,8 @@ typedef enum servo_drives_9400_command {
 #define DRIVESPEC_COB_ID_SDO_TX_BASE 0x0580u ///< SDO tx (I-1200/2), COB-ID less the node address
 #define DRIVESPEC_COB_ID_SDO_RX_BASE 0x0600u ///< SDO rx (I-1200/1), COB-ID less the node address
 #define DRIVESPEC_COB_ID_NMT_ERROR_CONTROL_BASE 0x0700u ///< NMT error control, COB-ID less the node address
-#define DRIVESPEC_NODE_MAX 127u ///< highest node address: COB-IDs stay below the next base
+#define DRIVESPEC_NODE_MIN 1u ///< lowest node address
+#define DRIVESPEC_NODE_MAX 127u ///< highest node address
 /** @} */
 
 /** Record of a code. All values are wire values: value * scaling. */
@@ -253,11 +254,11 @@ static inline uint32_t drivespec_field_set(uint32_t value, uint32_t mask, unsign
 
 /**
  * Value that follows the node address: a DRIVESPEC_COB_ID_..._BASE or a default with a base, never a broadcast.
- * False, and @p value as it was, where @p node is not 1 ... DRIVESPEC_NODE_MAX.
+ * False, and @p value as it was, where @p node is not DRIVESPEC_NODE_MIN ... DRIVESPEC_NODE_MAX.
  */
 static inline bool drivespec_at_node(uint32_t base, uint32_t node, uint32_t *value)
 {
-    if ((node == 0u) || (node > DRIVESPEC_NODE_MAX)) {
+    if ((node < DRIVESPEC_NODE_MIN) || (node > DRIVESPEC_NODE_MAX)) {
         return false;
     }
     *value = base + node;

@@ -195,49 +195,61 @@ impl ErrorNumber {
     /// Field [`ERROR_RESPONSE`].
     #[must_use]
     pub const fn response(self) -> u32 {
-        ERROR_RESPONSE.extract(self.0)
+        ERROR_RESPONSE.get(self.0)
     }
 
-    /// The number with another value in field [`ERROR_RESPONSE`]; bits that the field has no room for are dropped.
+    /// The number with another value in field [`ERROR_RESPONSE`]; `None` where it does not fit.
     #[must_use]
-    pub const fn with_response(self, value: u32) -> Self {
-        Self(ERROR_RESPONSE.insert(self.0, value))
+    pub const fn with_response(self, value: u32) -> Option<Self> {
+        match ERROR_RESPONSE.put(self.0, value) {
+            Some(number) => Some(Self(number)),
+            None => None,
+        }
     }
 
     /// Field [`ERROR_INSTANCE`].
     #[must_use]
     pub const fn instance(self) -> u32 {
-        ERROR_INSTANCE.extract(self.0)
+        ERROR_INSTANCE.get(self.0)
     }
 
-    /// The number with another value in field [`ERROR_INSTANCE`]; bits that the field has no room for are dropped.
+    /// The number with another value in field [`ERROR_INSTANCE`]; `None` where it does not fit.
     #[must_use]
-    pub const fn with_instance(self, value: u32) -> Self {
-        Self(ERROR_INSTANCE.insert(self.0, value))
+    pub const fn with_instance(self, value: u32) -> Option<Self> {
+        match ERROR_INSTANCE.put(self.0, value) {
+            Some(number) => Some(Self(number)),
+            None => None,
+        }
     }
 
     /// Field [`ERROR_MODULE`].
     #[must_use]
     pub const fn module(self) -> u32 {
-        ERROR_MODULE.extract(self.0)
+        ERROR_MODULE.get(self.0)
     }
 
-    /// The number with another value in field [`ERROR_MODULE`]; bits that the field has no room for are dropped.
+    /// The number with another value in field [`ERROR_MODULE`]; `None` where it does not fit.
     #[must_use]
-    pub const fn with_module(self, value: u32) -> Self {
-        Self(ERROR_MODULE.insert(self.0, value))
+    pub const fn with_module(self, value: u32) -> Option<Self> {
+        match ERROR_MODULE.put(self.0, value) {
+            Some(number) => Some(Self(number)),
+            None => None,
+        }
     }
 
     /// Field [`ERROR_ERROR`].
     #[must_use]
     pub const fn error(self) -> u32 {
-        ERROR_ERROR.extract(self.0)
+        ERROR_ERROR.get(self.0)
     }
 
-    /// The number with another value in field [`ERROR_ERROR`]; bits that the field has no room for are dropped.
+    /// The number with another value in field [`ERROR_ERROR`]; `None` where it does not fit.
     #[must_use]
-    pub const fn with_error(self, value: u32) -> Self {
-        Self(ERROR_ERROR.insert(self.0, value))
+    pub const fn with_error(self, value: u32) -> Option<Self> {
+        match ERROR_ERROR.put(self.0, value) {
+            Some(number) => Some(Self(number)),
+            None => None,
+        }
     }
 }
 

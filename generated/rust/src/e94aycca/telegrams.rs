@@ -17,6 +17,7 @@ use crate::codec::{self, DecodeError, EncodeError, Layout, Reader, Writer};
 /// data.
 ///
 /// - Protocol: SDO
+/// - Decodes these as well, which are to be tried first: [`SdoError`] (`command` 0x80)
 /// - Source: EDS94AYCCA-EN-5.0, 9.2 p. 63
 /// - Erratum `motorola-format`: printed 9.2, note: Motorola format; 9.2, table: Low byte, High byte; Low word, High
 ///   word; 9.3.1, example: index 0x5FC2 as 0xC2 0x5F, used low byte first

@@ -16,6 +16,7 @@ use crate::codec::{self, DecodeError, EncodeError, Layout, Reader, Writer};
 /// Reads or writes a parameter of up to four bytes; the answer to either has the same layout.
 ///
 /// - Protocol: SDO
+/// - Decodes these as well, which are to be tried first: [`SdoError`] (`command` 0x80)
 /// - Source: KHB-13.0002-EN-4.1, 5.2.1 p. 19
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]

@@ -26,7 +26,7 @@ fn telegram(line: &str) -> Result<String, Box<dyn Error>> {
     let data = (0..digits.len() / 2)
         .map(|byte| u8::from_str_radix(&digits[2 * byte..2 * byte + 2], 16))
         .collect::<Result<Vec<u8>, _>>()?;
-    let node = |entry: CobId| entry.id.node(identifier);
+    let node = |entry: CobId| entry.node(identifier);
     if let Some(node) = node(cob_ids::NMT_ERROR_CONTROL) {
         let status = HeartbeatStatus::try_from(Heartbeat::decode(&data)?.status_s())?;
         return Ok(format!("node {node}: {}", status.label()));
