@@ -22,7 +22,9 @@ from drivespec_devices._enums import Flags, Selection
 
 TYPE_CHECKING = False  # type checkers take it for True; it saves the time that importing typing costs
 if TYPE_CHECKING:
-    from typing import Any
+    from typing import Any, TypeVar
+
+    _N = TypeVar("_N", int, Fraction)
 
 __all__ = (
     "Access",
@@ -572,8 +574,8 @@ class Code(Record):
     def to_wire(self, value: int | float | Fraction | Decimal) -> int:
         """Number on the bus for a physical value: the value times the scaling, rounded to the nearest number.
 
-        Halves are rounded away from 0. The range holds for the value as given, before it is rounded. A float stands for
-        the decimal number that it is printed as, so 10.2 is 10.2 exactly.
+        Halves are rounded away from 0. Range and data type hold for the value as given, before it is rounded. A float
+        stands for the decimal number that it is printed as, so 10.2 is 10.2 exactly.
 
         Raises:
             TypeError: The value is no number.
@@ -589,9 +591,9 @@ class Code(Record):
             raise ValueError(f"{value} does not fit into {self.data_type.name} of {self.designation}") from None
         if self.range is not None and exact not in self.range:
             raise ValueError(f"{value} lies outside {self.range} of {self.designation}")
-        wire = exact * (self.scaling or 1)
+        wire = self._checked(exact * (self.scaling or 1))
         nearest = int(abs(wire) + Fraction(1, 2))
-        return self._checked(nearest if wire >= 0 else -nearest)
+        return nearest if wire >= 0 else -nearest
 
     def from_wire(self, raw: int) -> int | Fraction:
         """Physical value of a number on the bus: the number divided by the scaling. It may lie outside the range.
@@ -606,7 +608,7 @@ class Code(Record):
         raw = self._checked(operator.index(raw))
         return raw // scaling if raw % scaling == 0 else Fraction(raw, scaling)
 
-    def _checked(self, raw: int) -> int:
+    def _checked(self, raw: _N) -> _N:
         if not self.data_type.lowest <= raw <= self.data_type.highest:
             raise ValueError(f"{raw} does not fit into {self.data_type.name} of {self.designation}")
         return raw
