@@ -40,7 +40,12 @@ def check(model: Model, problems: Problems) -> None:
 def _citations(model: Model) -> Iterator[tuple[Cite, Where]]:
     for drive in model.drives:
         named: list[Cited] = [*drive.responses, *drive.modules, *drive.commands]
-        for cite in (*drive.index_base_cites, drive.error_fields_cite, *(n.cite for n in named)):
+        for cite in (
+            *drive.index_base_cites,
+            *drive.command_code_cites,
+            drive.error_fields_cite,
+            *(n.cite for n in named),
+        ):
             yield cite, drive.where
     standards: list[Placed] = [*model.standard_objects, *model.cob_ids]
     for defined in standards:

@@ -40,6 +40,7 @@ def drive(file: SourceFile, manuals: Mapping[str, Manual]) -> Drive:
     _check_folder(root, "drive", file.stem)
     base = root.child("index_base")
     number = root.child("error_number")
+    written = root.child("command_code")
     assert base is not None and number is not None
     layout = number.child("fields")
     assert layout is not None
@@ -75,13 +76,17 @@ def drive(file: SourceFile, manuals: Mapping[str, Manual]) -> Drive:
             DriveModule(value=int(n.get("value")), name=str(n.get("name")), origin=origin(n), cite=n.cite())
             for n in root.items("modules")
         ),
+        command_code=int(str(written.get("code"))[1:]) if written else None,
+        command_code_cites=(
+            tuple(file.cite(text, written.at("cites")) for text in written.texts("cites")) if written else ()
+        ),
         commands=tuple(
             DriveCommand(value=int(n.get("value")), name=str(n.get("name")), origin=origin(n), cite=n.cite())
             for n in root.items("commands")
         ),
         where=root.where,
     )
-    for cite in (result.error_fields_cite, *result.index_base_cites):
+    for cite in (result.error_fields_cite, *result.index_base_cites, *result.command_code_cites):
         known_manual(cite.manual, root, "drive", manuals)
     return result
 
