@@ -122,6 +122,7 @@ def test_what_scrolls_is_reached_with_the_keys(visitor: Visitor, kinds: dict[str
     for name in kinds.values():
         page.set_viewport_size({"width": 360, "height": 800})
         visitor.open(name)
+        page.evaluate("document.querySelectorAll('details').forEach((it) => { it.open = true; })")
         for width in (360, 1440):
             page.set_viewport_size({"width": width, "height": 800})
             page.evaluate("() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))")
