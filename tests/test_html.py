@@ -672,8 +672,11 @@ def test_every_number_of_a_run_has_its_anchor_and_code(devices: list[tuple[Devic
             for step, ref in enumerate(error.adjustable_in):
                 place = page.ids[error_id(error, error.number + step)]
                 if step:
-                    assert place.tag == "li"
-                    assert text(place) == f"0x{error.number + step:08x} {error.number + step} {ref}"
+                    number = error.number + step
+                    assert (place.tag, place.get("class")) == ("p", "asked")
+                    assert text(place) == f"0x{number:08x} = {number}, response set in {ref}"
+                    keys = [a for a in page.root.iter("a") if a.get("href") == f"#{place.get('id')}"]
+                    assert [text(key) for key in keys] == [f"0x{number:08x}"]
 
 
 def test_codes_name_the_errors_whose_response_they_set(devices: list[tuple[Device, Page]]) -> None:
@@ -799,8 +802,12 @@ def test_base_drive(devices: list[tuple[Device, Page]]) -> None:
             (int(text(r["Value"])), int(text(r["Hex"]), 16), text(r["Module"])) for r in table(section, "modules")
         ]
         assert modules == [(m.value, m.value, m.name) for m in drive.modules]
-        commands = [(int(text(r["Value"])), text(r["Command"])) for r in table(section, "commands")]
-        assert commands == [(c.value, c.name) for c in drive.commands]
+        commands = [(text(r["Value"]), text(r["Command"])) for r in table(section, "commands")]
+        assert drive.command_code is not None
+        assert commands == [(f"{CodeRef(drive.command_code)} = {c.value}", c.name) for c in drive.commands]
+        written = text(facts(section)["Device commands are written to"])
+        index = drive.index_base - drive.command_code
+        assert written == f"{CodeRef(drive.command_code)}, index {index} = 0x{index:04X}"
 
 
 def test_first_page_lists_devices_and_sources(model: Model, pages: dict[str, Page]) -> None:

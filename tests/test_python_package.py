@@ -771,8 +771,8 @@ def test_values_and_numbers_on_the_bus(pairs: list[tuple[Any, Device]], package:
                     if lowest < 0:
                         assert finer.to_wire(-value) == finer.to_wire(-float(value)) == -nearest
                 with pytest.raises(ValueError, match="not fit"):
-                    finer.to_wire(Fraction(2 * highest + 1, 2 * factor))
-                assert finer.to_wire(Fraction(10 * highest + 4, 10 * factor)) == highest
+                    finer.to_wire(Fraction(10 * highest + 4, 10 * factor))
+                assert finer.to_wire(Fraction(10 * highest - 4, 10 * factor)) == highest
                 scaled += 1
             assert replace(record, scaling=10, range=None).to_wire(10.2) == 102
             for nothing in (float("nan"), float("inf"), Decimal("nan"), Decimal("inf")):

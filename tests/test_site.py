@@ -105,11 +105,31 @@ def violations(page: Page) -> Iterator[str]:
             yield f"{found['id']}: {node['html'][:160]} {node['failureSummary'][:300]}"
 
 
-@pytest.mark.parametrize("scheme", ["light", "dark"])
-def test_axe_finds_nothing(visitor: Visitor, kinds: dict[str, str], scheme: Any) -> None:
+@pytest.mark.parametrize(("scheme", "width"), [("light", 1280), ("dark", 1280), ("light", 360)])
+def test_axe_finds_nothing(visitor: Visitor, kinds: dict[str, str], scheme: Any, width: int) -> None:
     visitor.page.emulate_media(color_scheme=scheme, reduced_motion="reduce")
+    visitor.page.set_viewport_size({"width": width, "height": 800})
     found = {name: list(violations(visitor.open(path))) for name, path in kinds.items()}
     assert {name: wrong for name, wrong in found.items() if wrong} == {}
+
+
+def test_what_scrolls_is_reached_with_the_keys(visitor: Visitor, kinds: dict[str, str]) -> None:
+    """Tables that are wider than their room take the focus and have a name; the others are no stop."""
+    state = """() => [...document.querySelectorAll(".scroll")].map((it) =>
+      [it.scrollWidth > it.clientWidth, it.tabIndex === 0, it.getAttribute("aria-label") ?? ""])"""
+    seen = set()
+    page = visitor.page
+    for name in kinds.values():
+        page.set_viewport_size({"width": 360, "height": 800})
+        visitor.open(name)
+        page.evaluate("document.querySelectorAll('details').forEach((it) => { it.open = true; })")
+        for width in (360, 1440):
+            page.set_viewport_size({"width": width, "height": 800})
+            page.evaluate("() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))")
+            for scrolls, reached, label in page.evaluate(state):
+                assert scrolls == reached == label.endswith("(table)"), (name, width, label)
+                seen.add((width, scrolls))
+    assert (360, True) in seen and (1440, False) in seen
 
 
 def test_axe_finds_what_is_wrong(visitor: Visitor) -> None:

@@ -22,7 +22,7 @@ from generator.cli import main
 from generator.emit import html
 from generator.emit.canopen import object_dictionaries
 from generator.emit.environment import TEMPLATES
-from generator.model import Device, Model
+from generator.model import CodeRef, Device, Model
 
 LIBRARIES = ("c", "python", "rust")
 SHOWN = {"technical-data", "connector", "cable", "bus-length"}
@@ -396,7 +396,12 @@ def test_the_page_of_errata_holds_the_ledgers(model: Model, parsed: dict[str, An
         assert text(statement.find("s")) == " ".join(printed.split())
         assert all(target(parsed, a.get("href")) is not None for a in concerns.iter("a"))
         assert concerns.text_content()
-    assert text(page.xpath('//main/p[@class="lead"]')[0]).startswith(f"{len(ledger)} ")
+    slips = sum(erratum.origin == "dump" for _, erratum in ledger)
+    lead = text(page.xpath('//main/p[@class="lead"]')[0])
+    assert lead.startswith(f"{len(ledger)} entries: {len(ledger) - slips} ") and f" and {slips} on slips " in lead
+    counts = {text(row[0]): int(text(row[-1])) for row in page.xpath('//table[@class="counts"]/tbody/tr')}
+    kinds = [text(row[2]) for row in rows]
+    assert counts == {kind: kinds.count(kind) for kind in kinds} | {"All": len(ledger)}
 
 
 def test_counts_of_errata_lead_to_as_many_entries(model: Model, parsed: dict[str, Any]) -> None:
@@ -459,6 +464,83 @@ def test_lists_are_filtered_over_all_their_tables(visitor: Visitor, model: Model
     page.get_by_label("Filter", exact=True).fill("no such words anywhere")
     assert page.locator(".filter").get_by_role("status").inner_text().startswith("0 of ")
     assert kinds.first.is_visible()
+
+
+def test_lists_are_filtered_by_what_their_rows_cover(visitor: Visitor, model: Model) -> None:
+    """Numbers within runs, codes that set responses, indexes of codes and objects, all that an erratum concerns."""
+    wanted: dict[str, list[tuple[str, str]]] = {}
+    for device in model.devices:
+        for erratum in device.errata:
+            for subject in erratum.about[1:-1][:1]:
+                wanted.setdefault("errata.html", []).append((str(subject), erratum.id))
+                wanted.setdefault(f"{device.id}-errata.html", []).append((str(subject), erratum.id))
+        for error in device.errors:
+            if error.count > 2:
+                within = error.number + 1
+                texts = [f"{within:x}", str(within), *map(str, error.adjustable_in[1:2])]
+                wanted.setdefault(f"{device.id}-errors.html", []).extend((t, f"{error.number:x}") for t in texts)
+        for code in device.codes[::20]:
+            texts = [str(code.index), f"{code.index:X}"]
+            wanted.setdefault(f"{device.id}-codes.html", []).extend((t, code.designation) for t in texts)
+        for entry in device.objects[::9]:
+            wanted.setdefault(f"{device.id}-objects.html", []).append((str(entry.index), entry.designation))
+    assert {"errata.html", "e94aycca-errors.html", "e94aycca-codes.html", "e94aycca-errata.html"} <= wanted.keys()
+    for name, queries in wanted.items():
+        page = visitor.open(name)
+        field = page.get_by_label("Filter", exact=True)
+        for query, found in queries[:25]:
+            field.fill(query)
+            shown = page.locator("table.overview > tbody > tr:visible > th").all_inner_texts()
+            assert any(found in one for one in shown), (name, query)
+        field.fill("no such words anywhere")
+        assert page.locator("table.overview > tbody > tr:visible, article:visible").count() == 0
+
+
+def test_the_errata_of_a_device_are_narrowed_with_their_entries(visitor: Visitor, model: Model) -> None:
+    device = max(model.devices, key=lambda device: len(device.errata))
+    page = visitor.open(f"{device.id}-errata.html")
+    page.get_by_label("Filter", exact=True).fill(device.errata[0].id)
+    entries = [entry.get_attribute("id") for entry in page.locator("article:visible").all()]
+    assert f"erratum-{device.errata[0].id}" in entries and len(entries) < len(device.errata)
+    assert len(entries) == page.locator("table.overview > tbody > tr:visible").count()
+
+
+def test_an_erratum_beside_a_code_shows_the_place_that_differs(model: Model, parsed: dict[str, Any]) -> None:
+    seen = 0
+    for device in model.devices:
+        for erratum in device.errata:
+            codes = [subject for subject in erratum.about if isinstance(subject, CodeRef)]
+            differing = [place for place in erratum.places if place.printed != erratum.used_text]
+            named = [place for place in differing if re.search(r"C\d{5}|0x|I-", place.location)]
+            if not codes or not differing or len(differing) == len(erratum.places) or named:
+                continue
+            page = parsed.get(f"{device.id}-c{codes[0].number:05d}.html")
+            found = [n for n in page.find_class("note") if erratum.id in text(n)] if page is not None else []
+            if found:
+                assert all(" ".join(place.printed.split()) in text(found[0]) for place in differing), erratum.id
+                seen += 1
+    assert seen
+
+
+def test_a_code_names_each_error_once(model: Model, parsed: dict[str, Any]) -> None:
+    seen = 0
+    for device in model.devices:
+        for code in device.codes:
+            page = parsed.get(f"{device.id}-c{code.number:05d}.html")
+            shown = related(page).get("Sets the response to") if page is not None else None
+            if shown is not None:
+                links = [a.get("href") for a in shown.iter("a")]
+                assert len(links) == len(set(links)), code.designation
+                seen += 1
+    assert seen
+
+
+def test_files_of_a_kind_are_told_apart(model: Model, parsed: dict[str, Any]) -> None:
+    """Each GSD file says whether to take it."""
+    items = parsed["downloads.html"].xpath('//ul[@class="downloads"]/li[contains(a/@href, "/gsd/")]')
+    whats = [text(item.find("p")) for item in items]
+    assert len(whats) > 2 and len(whats) == len(set(whats))
+    assert sum("take this one" in what for what in whats) == 1
 
 
 def test_a_choice_of_an_address_that_no_list_has_is_no_choice(visitor: Visitor, model: Model) -> None:

@@ -355,6 +355,27 @@ def test_without_scripts_the_tables_say_it_all(browser: Browser, site: Path, mod
     context.close()
 
 
+def test_a_phone_shows_what_the_leds_mean(visitor: Visitor, model: Model) -> None:
+    """State and meaning of every row, then its LEDs by their names, all within the screen."""
+    visitor.page.set_viewport_size({"width": 360, "height": 740})
+    for device in with_leds(model):
+        page = visitor.open(f"{device.id}-leds.html")
+        for table in device.indicators:
+            for number, row in enumerate(table.rows, 1):
+                cells = page.locator(f"[id='led-{table.id}.{number}'] > *").all()
+                boxes = {}
+                for cell in cells:
+                    box = cell.bounding_box()
+                    assert box is not None and box["x"] >= 0 and box["x"] + box["width"] <= 360
+                    boxes[cell.get_attribute("data-head")] = box["y"]
+                order = sorted(boxes, key=lambda head: boxes[head])
+                assert order[:2] == ["State", "Meaning"]
+                assert [str(head).split(" ")[0] for head in order[2 : 2 + len(table.leds)]] == [
+                    led.label.split(" ")[0] for led in table.leds
+                ]
+                assert row.state in cells[len(table.leds)].inner_text()
+
+
 def test_fits_a_narrow_screen_and_a_finger(browser: Browser, site: Path, model: Model) -> None:
     context = browser.new_context(viewport={"width": 320, "height": 700})
     visitor = Visitor(context.new_page(), site)
@@ -427,6 +448,8 @@ SEEN = """() => [...document.querySelectorAll(".connector svg")].map((svg) => {
 })"""
 """Each drawing by the id around it: its box, that of the shell, its texts with their boxes, whether one is a number."""
 Box = list[float]
+NOTHING = ("-", "Not assigned", "Reserved")
+"""What the manuals print at contacts that carry nothing."""
 
 
 def overlap(a: Box, b: Box) -> bool:
@@ -450,7 +473,7 @@ def test_connectors_show_each_signal_at_its_contact(visitor: Visitor, model: Mod
             numbers = {text: box for text, box, inside in texts if inside}
             assert set(numbers) == {str(contact.number) for contact in assignment.connector.contacts}
             labels = [(text, box) for text, box, inside in texts if not inside]
-            expected = {str(pin): signal for pin, signal in assignment.signals if signal != "-"}
+            expected = {str(pin): signal for pin, signal in assignment.signals if signal not in NOTHING}
             assert sorted(text for text, _ in labels) == sorted(expected.values())
             middle = (shell[2] + shell[3]) / 2
             rows = {box[2] for box in numbers.values()}

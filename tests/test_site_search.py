@@ -195,6 +195,83 @@ def test_error_as_the_drive_reports_it(start: Page, model: Model) -> None:
             assert f"{fields['instance'].label} 1" in answers[0][1]
 
 
+def test_a_number_of_a_run_is_marked_above_causes_and_remedies(visitor: Visitor, model: Model) -> None:
+    _, error, number, href = next(it for it in error_numbers(model) if "#" in it[3] and it[1].causes)
+    for size in ({"width": 1440, "height": 900}, {"width": 360, "height": 740}):
+        visitor.page.set_viewport_size({"width": size["width"], "height": size["height"]})
+        page = visitor.open(href)
+        assert page.evaluate("scrollY") == 0
+        named = page.locator(f"[id='{href.partition('#')[2]}']")
+        expect(named).to_be_in_viewport()
+        assert named.inner_text().startswith(f"{error_text(error.kind, number)} = {number}, response set in C")
+        assert named.evaluate("(it) => getComputedStyle(it).backgroundColor") != "rgba(0, 0, 0, 0)"
+        assert page.locator(".asked:visible").count() == 1
+        if size["width"] > 1000:
+            for heading in ("Causes", "Remedies"):
+                expect(page.locator(".halves .cap", has_text=heading)).to_be_in_viewport()
+    page.locator(".items b a").nth(3).click()
+    assert page.evaluate("scrollY") == 0
+    assert page.locator(".asked:visible").count() == 1
+
+
+def test_error_number_that_no_list_has(visitor: Visitor, model: Model) -> None:
+    """Its fields are said, and the way leads to the page that takes it apart."""
+    device = next(device for device in model.devices if device.drive and device.error_mask)
+    assert device.drive is not None
+    fields = dict(device.drive.error_fields)
+    known = {error.number >> fields["module"].low for error in device.errors if error.kind == "device"}
+    module = next(value for value in range(0x39E, 0x3FF) if value not in known)
+    response = device.drive.responses[1]
+    number = response.value << fields["response"].low | module << fields["module"].low | 5
+    page = visitor.open(f"{device.id}.html")
+    ready(page)
+    for query in (f"0x{number:08x}", str(number)):
+        ((text, name, href),) = ask(page, [query])[0]
+        assert text == f"0x{number:08x}"
+        for said in ("In no list", f"response {response.value}: {response.name}", f"module 0x{module:x}", "error 0x5"):
+            assert said in name
+    visitor.open(href)
+    assert f"0x{number:08X}" in page.locator("#number .result").inner_text()
+    assert ask_again(page, model)
+
+
+def ask_again(page: Page, model: Model) -> bool:
+    """Whether a module that the drive names is named too."""
+    drive = model.drives[0]
+    module = drive.modules[0]
+    ready(page)
+    number = module.value << dict(drive.error_fields)["module"].low | 0xFFFF
+    return f": {module.name}," in ask(page, [f"0x{number:08x}"])[0][0][1]
+
+
+def test_device_commands(start: Page, model: Model) -> None:
+    for device, links in places(model):
+        drive = device.drive
+        if drive is None or drive.command_code is None:
+            continue
+        code = f"C{drive.command_code:05d}"
+        index = drive.index_base - drive.command_code
+        for answers in ask(start, [code, "device commands", str(index), f"0x{index:04X}"]):
+            assert links.href("drive-commands") in hrefs(answers[: len(model.devices)])
+        for command in drive.commands:
+            texts = [f"{code} = {command.value}", f"{code.lower()}={command.value}", command.name]
+            for answers in ask(start, texts):
+                assert links.href(f"drive-command-{command.value}") in hrefs(answers[:9]), command
+
+
+def test_words_of_the_trade(start: Page, model: Model) -> None:
+    baud, *others = ask(start, ["baud rate", "baudrate", "bitrate", "bit rate"])
+    assert baud and all(hrefs(found[:5]) == hrefs(baud[:5]) for found in others)
+    (pins,) = ask(start, ["pinout"])
+    wanted = {
+        links.href(named_id("table", table.id))
+        for device, links in places(model)
+        for table in device.tables
+        if table.assignment
+    }
+    assert wanted <= set(hrefs(pins))
+
+
 def test_abort_code_as_bytes(start: Page, model: Model) -> None:
     for _, error, number, href in error_numbers(model):
         if error.kind == "sdo_abort":
@@ -235,6 +312,41 @@ def test_led_by_what_is_seen(start: Page, model: Model) -> None:
                         assert links.href(named_id("led", table.id, str(number))) in hrefs(answers[:6]), query
                         seen += 1
     assert seen
+
+
+@pytest.mark.parametrize(
+    "query", ["{0} blinking {1}", "{0} blinks {1}", "{0} flashes {1}", "{0} flashes {2} {1}", "{0} {2} blinks {1}"]
+)
+def test_counted_blinking_is_flashing_of_the_led_beside(start: Page, model: Model, query: str) -> None:
+    """Every row in which that LED flashes so often, and none in which another does so."""
+    counts = {1: "once", 2: "twice", 3: "3 times"}
+    expected: dict[str, set[str]] = {}
+    for _, links in places(model):
+        for table in links.device.indicators:
+            for number, row in enumerate(table.rows, 1):
+                for led, pattern in zip(table.leds, row.patterns, strict=True):
+                    if pattern.light is Light.FLASH:
+                        asked = query.format(led.label, counts[pattern.flashes or 1], pattern.colour or led.colour)
+                        found = expected.setdefault(asked, set())
+                        found.add(links.href(named_id("led", table.id, str(number))))
+    assert any(len(found) > 2 for found in expected.values())
+    for asked, answers in zip(expected, ask(start, list(expected)), strict=True):
+        assert set(hrefs(answers)) == expected[asked], asked
+
+
+def test_words_after_an_led_are_those_of_that_led(start: Page, model: Model) -> None:
+    for _, links in places(model):
+        for table in links.device.indicators:
+            for number, row in enumerate(table.rows, 1):
+                lights = [pattern.light for pattern in row.patterns]
+                if len(table.leds) == 2 and lights == [Light.ON, Light.OFF]:
+                    first, second = (led.label for led in table.leds)
+                    href = links.href(named_id("led", table.id, str(number)))
+                    right, wrong = ask(start, [f"{first} lit {second} off", f"{second} lit {first} off"])
+                    assert hrefs(right) == [href]
+                    assert href not in hrefs(wrong)
+                    return
+    raise AssertionError("no table with a row to ask for")
 
 
 def test_led_words_belong_to_the_colour(start: Page, model: Model) -> None:

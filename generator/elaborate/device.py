@@ -39,6 +39,7 @@ def drive(file: SourceFile) -> Drive:
     _check_folder(root, "drive", file.stem)
     base = root.child("index_base")
     number = root.child("error_number")
+    written = root.child("command_code")
     assert base is not None and number is not None
     layout = number.child("fields")
     assert layout is not None
@@ -74,6 +75,8 @@ def drive(file: SourceFile) -> Drive:
             DriveModule(value=int(n.get("value")), name=str(n.get("name")), origin=origin(n), cite=n.cite())
             for n in root.items("modules")
         ),
+        command_code=int(str(written.get("code"))[1:]) if written else None,
+        command_code_cites=written.cites("cites") if written else (),
         commands=tuple(
             DriveCommand(value=int(n.get("value")), name=str(n.get("name")), origin=origin(n), cite=n.cite())
             for n in root.items("commands")

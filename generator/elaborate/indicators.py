@@ -180,7 +180,14 @@ def _assignment(
             node.problems.add("name-unknown", node.at(key), f"there is no {what} '{name}'", hint=hint)
             return None
     pin, signal = (columns.index(str(node.get(key))) for key in ("pin", "signal"))
-    return Assignment(known[str(node.get("shape"))], tuple((row[pin], str(row[signal])) for row in rows))
+    signals = tuple((row[pin], str(row[signal])) for row in rows)
+    unused = node.texts("unused")
+    for text in unused:
+        printed = sorted({carried for _, carried in signals})
+        if text not in printed:
+            hint = suggestion(text, printed, "signals")
+            node.problems.add("name-unknown", node.at("unused"), f"no contact carries '{text}'", hint=hint)
+    return Assignment(known[str(node.get("shape"))], signals, unused)
 
 
 def formulas(root: Node, errata: ErrataIndex) -> tuple[Formula, ...]:

@@ -16,6 +16,7 @@ from generator.model import (
     CobId,
     Code,
     CodeCounts,
+    CodeRef,
     Default,
     Device,
     DictionaryObject,
@@ -163,7 +164,18 @@ def _drive(drive: Drive) -> Json:
         },
         "responses": [{**_named(response), "aliases": list(response.aliases)} for response in drive.responses],
         "modules": list(map(_named, drive.modules)),
+        "command_code": _command_code(drive),
         "commands": list(map(_named, drive.commands)),
+    }
+
+
+def _command_code(drive: Drive) -> Json | None:
+    if drive.command_code is None:
+        return None
+    return {
+        "code": str(CodeRef(drive.command_code)),
+        "index": drive.index_base - drive.command_code,
+        "cites": list(map(_cite, drive.command_code_cites)),
     }
 
 
@@ -416,6 +428,7 @@ def _connector(assignment: Assignment) -> Json:
         "form": connector.form,
         "contacts": [{"number": c.number, "right": c.right, "down": c.down} for c in connector.contacts],
         "signals": {str(pin): signal for pin, signal in assignment.signals},
+        "unused": list(assignment.unused),
         "cite": _cite(connector.cite),
     }
 

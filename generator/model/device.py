@@ -54,7 +54,7 @@ class DriveModule:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class DriveCommand:
-    """A device command: the value that is written to code C00002."""
+    """A device command: the value that is written to the code of commands."""
 
     value: int
     name: str
@@ -67,7 +67,8 @@ class Drive:
     """A base drive: ``index_base`` - code number = index of a code.
 
     ``error_fields``: bits of an error number by name; ``reported_fields``: those that the drive fills when it reports
-    the error, so that they do not tell which error it is.
+    the error, so that they do not tell which error it is.  ``command_code``: number of the code that commands are
+    written to.
     """
 
     id: str
@@ -81,6 +82,8 @@ class Drive:
     error_fields_origin: Origin
     error_fields_cite: Cite
     modules: tuple[DriveModule, ...]
+    command_code: int | None
+    command_code_cites: tuple[Cite, ...]
     commands: tuple[DriveCommand, ...]
     where: Where
 

@@ -46,10 +46,14 @@ class Connector:
 
 @dataclass(frozen=True, slots=True)
 class Assignment:
-    """What the contacts of a connector carry, by number, as the table of an assignment prints it."""
+    """What the contacts of a connector carry, by number, as the table of an assignment prints it.
+
+    ``unused``: what it prints, beside a dash, at contacts that carry nothing.
+    """
 
     connector: Connector
     signals: tuple[tuple[int | str, str], ...]
+    unused: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

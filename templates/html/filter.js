@@ -9,16 +9,18 @@
   const tables = [...document.querySelectorAll("main table.overview")];
   const sections = [...new Set(tables.map((table) => table.closest("section")))];
 
-  // What is compared of a row: its text with that of the remarks below it, and its cells by their headings.
+  // What is compared of a row: its text with that of the remarks below it and of its entry on this page, the numbers
+  // that it covers, and its cells by their headings.
   const rows = tables.flatMap((table) => {
     const heads = [...table.tHead.rows[0].cells].map((cell) => cell.textContent.trim());
     const list = table.closest("section").querySelector("h2").textContent.trim();
     return [...table.tBodies[0].rows].filter((row) => !row.matches(".more")).map((row) => {
       const below = row.nextElementSibling?.matches(".more") ? [row.nextElementSibling] : [];
-      const elements = [row, ...below];
+      const entry = document.getElementById(row.querySelector("a[href^='#']")?.hash.slice(1) ?? "");
+      const elements = [row, ...below, ...(entry?.matches("article") ? [entry] : [])];
       const values = new Map(heads.map((head, place) => [head, row.cells[place].textContent.trim()]));
       values.set("", list);
-      return { elements, values, text: elements.map((element) => element.textContent).join(" ").toLowerCase() };
+      return { elements, values, text: [row.dataset.covers ?? "", ...elements.map((it) => it.textContent)].join(" ").toLowerCase() };
     });
   });
 
@@ -33,7 +35,7 @@
       for (const element of row.elements) element.hidden = !fits;
       shown += fits;
     }
-    for (const section of sections) section.hidden = shown > 0 && !section.querySelector("tbody tr:not([hidden])");
+    for (const section of sections) section.hidden = shown > 0 && !section.querySelector(".overview tbody tr:not([hidden])");
     status.textContent = `${shown} of ${rows.length}`;
     clear.disabled = !words.length && !choices.length;
   };

@@ -82,7 +82,10 @@
       }
       const own = ` ${fold(name)} `;
       const numbered = spots.map((it) => fold(it[0])).join(" ");
-      places.push({ row, part: null, name: own, said: ` ${fold(words)} ${numbered} `, whole: "" });
+      // What each LED of a row does, by its label.
+      const [, ...seen] = kind === data.led[0] ? ` ${fold(words)} `.split(data.led[1]) : [];
+      const lamps = seen.length ? new Map(seen.map((it) => [it.trim().split(" ")[0], it])) : null;
+      places.push({ row, part: null, name: own, said: ` ${fold(words)} ${numbered} `, whole: "", lamps });
       for (const part of parts) {
         if (part[1]) places.push({ row, part, name: ` ${fold(part[1])} `, said: ` ${fold(part[2] ?? "")} `, whole: own });
       }
@@ -94,13 +97,13 @@
       starts.push(at);
       at += line.length + 1;
     }
-    return { ...data, numbers, runs, begins, places, starts, text: lines.join("\n") };
+    return { ...data, leds: new Set(data.leds), counts: new Set(data.counts), numbers, runs, begins, places, starts, text: lines.join("\n") };
   }
 
   // Answers
 
   function find(index, query, device) {
-    const text = fold(query).trim().replace(/\s+/g, " ");
+    const text = fold(query).replace(/=/g, " = ").trim().replace(/\s+/g, " ");
     if (!text) return { hits: [], instead: "" };
     const best = new Map();
     // One number for the order: tier, score, device of the page, place in the list.
@@ -115,13 +118,25 @@
     numbered(index, text, add);
     begun(index, text, add);
     const words = text.split(" ");
-    worded(index, words, device, add);
+    const beside = lampsOf(index, words);
+    worded(index, words, beside, device, add);
+    const counted = flashes(index, words, beside);
+    if (counted) worded(index, counted, beside, device, add);
+    if (!best.size) unlisted(index, text, device, add);
     let instead = "";
+    // Words of the trade, beside those that the manuals use.
+    const called = Object.entries(index.also).reduce((it, [said, name]) => it.replace(` ${said} `, ` ${name} `), ` ${text} `).trim();
+    if (called !== text) {
+      if (!best.size) instead = called;
+      const others = called.split(" ");
+      worded(index, others, lampsOf(index, others), device, add);
+    }
     if (!best.size) {
       const mended = words.map((word) => mend(index, word));
       if (mended.every(Boolean)) {
         instead = mended.join(" ");
-        worded(index, mended, device, add);
+        const others = instead.split(" ");
+        worded(index, others, lampsOf(index, others), device, add);
       }
     }
     return { hits: [...best.values()].sort((a, b) => a.rank - b.rank), instead };
@@ -153,16 +168,11 @@
 
   // Error numbers as a drive reports them, with the fields that change at run time.
   function reported(index, number, score, add) {
-    index.reported.forEach(([mask, fields], device) => {
+    index.reported.forEach(([mask, drive], device) => {
       const listed = (number & mask) >>> 0;
       if (!mask || listed === number || number > 0xffffffff) return;
-      const said = fields
-        .map(([label, low, high, names]) => {
-          const value = Math.floor(number / 2 ** low) % 2 ** (high - low + 1);
-          return names[value] ? `${label} ${value}: ${names[value]}` : value ? `${label} ${value}` : "";
-        })
-        .filter(Boolean);
-      const note = `reported with ${said.join(", ")}`;
+      const said = index.fields[drive].filter(([, , , , changes]) => changes).map((field) => read(field, number));
+      const note = `reported with ${said.filter(Boolean).join(", ")}`;
       for (const hit of index.numbers.get(`d${listed}`) ?? []) {
         if (hit.row.device === device) add({ ...hit, tier: EXACT, score, note });
       }
@@ -171,6 +181,39 @@
         if (holds && hit.row.device === device) add({ ...hit, tier: RUN, score, note });
       }
     });
+  }
+
+  // What a field of an error number holds, "" for nothing; wide fields are written in hexadecimal.
+  function read([label, low, high, names], number) {
+    const value = Math.floor(number / 2 ** low) % 2 ** (high - low + 1);
+    const shown = high - low < 8 ? value : `0x${value.toString(16)}`;
+    return names[value] ? `${label} ${shown}: ${names[value]}` : value ? `${label} ${shown}` : "";
+  }
+
+  // An error number that no list has: its fields, and the way to the page that takes numbers apart.
+  function unlisted(index, text, device, add) {
+    const own = index.reported[device]?.[0] ? device : index.reported.findIndex(([mask]) => mask);
+    const reading = readings(text).find(({ spaces, parts }) => spaces.includes("d") && !parts.length);
+    if (own < 0 || !reading || reading.number < 2 ** 16 || reading.number >= 2 ** 32) return;
+    const [, drive, page] = index.reported[own];
+    const number = `0x${reading.number.toString(16).padStart(8, "0")}`;
+    const said = index.fields[drive].map((field) => read(field, reading.number)).filter(Boolean).join(", ");
+    const name = "In no list; its fields";
+    const row = { order: 0, kind: index.kinds.length, device: own, name, spots: [], parts: new Map() };
+    add({ row, spot: [number, `${page}?number=${number}#number`], tier: WORDS, score: 0, note: said });
+  }
+
+  // The LED that each word of a query stands beside, "" before the first.
+  function lampsOf(index, words) {
+    let led = "";
+    return words.map((word) => (index.leds.has(word) ? (led = word) : led));
+  }
+
+  // The words with "blinks" as "flashes" where they say how often, null where they do not.
+  function flashes(index, words, beside) {
+    const counts = new Set(beside.filter((_, nth) => index.counts.has(words[nth]) || /^\dx?$/.test(words[nth])));
+    const found = words.map((word, nth) => (counts.has(beside[nth]) && index.counted[word]) || word);
+    return found.some((word, nth) => word !== words[nth]) ? found : null;
   }
 
   // Names that are written just so, and numbers that are still being typed.
@@ -190,8 +233,8 @@
   }
 
   // Lines that hold every word, in whatever order; found by the longest, the rarest as a rule.
-  function worded(index, words, device, add) {
-    const forms = words.map((word) => [` ${word} `, ` ${word}`, word]);
+  function worded(index, words, beside, device, add) {
+    const forms = words.map((word, nth) => [` ${word} `, ` ${word}`, word, beside[nth]]);
     const phrase = ` ${words.join(" ")}`;
     const rare = words.reduce((a, b) => (b.length > a.length ? b : a));
     let line = 0;
@@ -218,7 +261,8 @@
   }
 
   // How well a line answers: whole words before beginnings before middles, the name before what is said of it.
-  function rate({ name, said, whole }, forms, phrase) {
+  function rate({ name, said, whole, lamps }, forms, phrase) {
+    if (lamps && forms.some((form) => ofAnother(lamps, form))) return 0;
     let score = 0;
     let own = !whole;
     for (const form of forms) {
@@ -236,6 +280,12 @@
     }
     if (name === `${phrase} `) score += 2;
     return score;
+  }
+
+  // Whether another LED does what a word says of the one beside it.
+  function ofAnother(lamps, [, beginning, , led]) {
+    if (!lamps.has(led) || lamps.get(led).includes(beginning)) return false;
+    return [...lamps.values()].some((it) => it.includes(beginning));
   }
 
   function weigh(text, [whole, beginning, middle]) {
@@ -423,9 +473,10 @@
     const address = part ? spots[0][3] + part[0] : spots[0][1];
     const name = part?.[1] ? [row.name, ": ", part[1]] : [row.name];
     const label = index.devices[row.device]?.[1];
+    const kind = index.kinds[row.kind] ?? "Error number";
     return make("a", { role: "option", id: `answer-${nth}`, href: address, tabindex: "-1" },
       make("b", {}, text), " ", make("span", { class: "name" }, ...name, ...(note ? [" ", make("i", {}, note)] : [])), " ",
-      make("small", {}, label ? `${label} · ${index.kinds[row.kind]}` : index.kinds[row.kind]));
+      make("small", {}, label ? `${label} · ${kind}` : kind));
   }
 
   // Keys

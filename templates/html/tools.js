@@ -71,6 +71,29 @@
     return button;
   }
 
+  // Tables that are wider than their room can be scrolled with the keys; the others are no stop on the way.
+
+  const named = (box) => {
+    if (box.dataset.label) return box.dataset.label;
+    const heading = box.closest("article, section")?.querySelector("h1, h2, h3, h4");
+    return box.querySelector("caption")?.textContent ?? heading?.textContent.trim().replace(/\s+/g, " ") ?? document.title;
+  };
+  const wide = new ResizeObserver((entries) => {
+    for (const box of new Set(entries.map(({ target }) => target.closest(".scroll")))) {
+      if (box.scrollWidth > box.clientWidth) {
+        box.tabIndex = 0;
+        box.setAttribute("role", "group");
+        box.setAttribute("aria-label", `${named(box)} (table)`);
+      } else {
+        for (const name of ["tabindex", "role", "aria-label"]) box.removeAttribute(name);
+      }
+    }
+  });
+  for (const box of document.querySelectorAll(".scroll")) {
+    wide.observe(box);
+    wide.observe(box.firstElementChild);
+  }
+
   const addressOf = (href) => new URL(href, location.href).href;
 
   // An entry with a page of its own: its numbers and its address below the heading, its other numbers in their cells.

@@ -18,11 +18,18 @@ class Fact:
 
 @dataclass(frozen=True, slots=True)
 class Item:
-    """A key and its meaning: a value of a selection list, a bit, a number of a run; ``id`` is "" without anchor."""
+    """A key and its meaning: a value of a selection list, a bit, a number of a run."""
 
     key: Piece
     meaning: Prose
-    id: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Asked:
+    """A number of a run as it is named at the top of the page for whoever comes for it; ``id`` is its anchor."""
+
+    id: str
+    text: Prose
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,7 +52,8 @@ class Bullets:
 class Row:
     """A row of a table, its first cell the row's head.
 
-    ``id`` and ``more_ids`` are anchors; ``remarks`` and ``lists`` stand below the cells.
+    ``id`` and ``more_ids`` are anchors; ``remarks`` and ``lists`` stand below the cells; ``covers`` is what a filter
+    finds the row by beside its text, such as the numbers of a run.
     """
 
     cells: tuple[Prose, ...]
@@ -53,6 +61,7 @@ class Row:
     more_ids: tuple[str, ...] = ()
     remarks: tuple[Prose, ...] = ()
     lists: tuple[ItemList, ...] = ()
+    covers: str = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -68,6 +77,11 @@ class Table:
     def columns_below(self) -> int:
         """Over how many columns the remarks and lists of a row stretch: all but that of its head."""
         return len(self.head) - 1
+
+    @property
+    def stacks(self) -> bool:
+        """Whether the cells of a row stand below each other on narrow screens, each with its heading."""
+        return self.kind == "lamps"
 
 
 @dataclass(frozen=True, slots=True)
@@ -121,7 +135,8 @@ class Entry:
     """A code, object, error, erratum, table or another thing that is described by itself.
 
     ``anchors``: its number, in several slots one for each.  ``marks``: short words on where it is from.
-    ``columns``: parts of one long table that stand side by side.  ``related``: facts that lead elsewhere.
+    ``asked``: numbers of its runs.  ``columns``: parts of one long table that stand side by side.
+    ``related``: facts that lead elsewhere.
     ``printed``: what each place prints, verbatim.
     """
 
@@ -139,6 +154,7 @@ class Entry:
     related: tuple[Fact, ...] = ()
     notes: tuple[Note, ...] = ()
     printed: tuple[str, ...] = ()
+    asked: tuple[Asked, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)

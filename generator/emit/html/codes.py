@@ -53,7 +53,8 @@ def _overview_row(links: Links, entry: _Variants) -> Row:
     code = entry[0]
     cells = (code.name, code.type_name, _range(code), _brief_default(code), _access(code))
     numbers = joined([links.anchored(_anchor(one)) for one in entry], " ")
-    return Row((numbers, *(cell or NONE for cell in cells)))
+    covers = " ".join(f"{one.index} {hexadecimal(one.index, _INDEX_BITS)}" for one in entry)
+    return Row((numbers, *(cell or NONE for cell in cells)), covers=covers)
 
 
 def _anchor(code: Code) -> Anchor:
@@ -246,9 +247,9 @@ def _related(links: Links, entry: _Variants) -> Iterator[Fact]:
     objects = links.objects(ref for one in entry for ref in links.mirrors_of(one))
     if objects:
         yield Fact("Objects", objects)
-    errors = [(links.error(e.ref), f" {e.name}") for one in entry for e in links.errors_set_in(one)]
+    errors = dict.fromkeys((links.error(e.ref), f" {e.name}") for one in entry for e in links.errors_set_in(one))
     if errors:
-        yield Fact("Sets the response to", joined(errors, "; "))
+        yield Fact("Sets the response to", joined(tuple(errors), "; "))
     twins = [(links.code(twin.ref),) for twin in links.twins(entry[0]) if twin not in entry]
     if twins:
         yield Fact("In the other slot", joined(twins))

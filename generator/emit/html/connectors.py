@@ -59,10 +59,16 @@ def drawing(links: Links, assignment: Assignment) -> Drawing:
 
 def _scale(assignment: Assignment) -> _Scale:
     """The labels of one row stand on their ends; of two rows they lie, by turns near the shell and far from it."""
-    longest = max(len(signal) for _, signal in assignment.signals) * _LETTER
+    longest = max(map(len, _carried(assignment).values()), default=0) * _LETTER
     if len(_rows(assignment)) == 1:
         return _Scale(_NEAREST, True, longest)
     return _Scale(max(_NEAREST, (longest + _GAP) / 4), False, longest)
+
+
+def _carried(assignment: Assignment) -> dict[str, str]:
+    """What the contacts that carry something carry, by number."""
+    nothing = (NOTHING_PRINTED, *assignment.unused)
+    return {str(pin): signal for pin, signal in assignment.signals if signal not in nothing}
 
 
 def _rows(assignment: Assignment) -> list[int]:
@@ -70,12 +76,11 @@ def _rows(assignment: Assignment) -> list[int]:
 
 
 def _contacts(assignment: Assignment, scale: _Scale, top: float, bottom: float) -> Iterator[Contact]:
-    signals = {str(pin): signal for pin, signal in assignment.signals}
+    signals = _carried(assignment)
     upper, *lower = _rows(assignment)
     for down in (upper, *lower):
         row = [contact for contact in assignment.connector.contacts if contact.down == down]
         for place, contact in enumerate(sorted(row, key=lambda contact: contact.right)):
-            signal = signals.get(str(contact.number), NOTHING_PRINTED)
             away = 0 if scale.upright else _LINE * (place % 2)
             if down == upper:
                 edge, label = top, top - _GAP / 2 - away
@@ -87,7 +92,7 @@ def _contacts(assignment: Assignment, scale: _Scale, top: float, bottom: float) 
                 x=_text(contact.right * scale.half_pitch),
                 y=_text(down * _NEAREST),
                 number=str(contact.number),
-                signal="" if signal == NOTHING_PRINTED else signal,
+                signal=signals.get(str(contact.number), ""),
                 label_y=_text(label),
                 upright=scale.upright,
                 leader=f"{_text(edge)}V{_text(end)}" if away else "",

@@ -147,9 +147,12 @@ def _masters(device: Device, offered: Offered) -> Iterator[Download]:
             path = f"{format_name.lower()}/{name_of(dictionary)}"
             if path in offered:
                 yield _download(offered, path, f"{format_name}, {label_of(dictionary)}")
-    for name, language in gsd.file_names(device.gsd) if device.gsd else ():
+    for place, (name, language) in enumerate(gsd.file_names(device.gsd) if device.gsd else ()):
         if f"gsd/{name}" in offered:
-            yield _download(offered, f"gsd/{name}", f"GSD, {language_of(language)}")
+            use = (
+                "the default file; in doubt, take this one" if place == 0 else "for tools that are set to this language"
+            )
+            yield _download(offered, f"gsd/{name}", f"GSD, {language_of(language)}, {use}")
 
 
 def _headers(device: Device, offered: Offered) -> Iterator[Download]:

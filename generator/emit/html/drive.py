@@ -5,10 +5,12 @@ from dataclasses import dataclass
 
 from generator.emit.html.blocks import Fact, Row, Table
 from generator.emit.html.links import Links
+from generator.emit.html.places import COMMANDS, command_id
 from generator.emit.html.text import NONE, Piece, Prose, between, hexadecimal, joined, noted, shown_origin
-from generator.model import Drive, DriveCommand, DriveModule, Origin, Response
+from generator.model import CodeRef, Drive, DriveCommand, DriveModule, Origin, Response
 
 _MODULE_BITS = 12
+_INDEX_BITS = 16
 _ERROR_BITS = 32
 
 
@@ -36,7 +38,7 @@ def drive_section(links: Links, drive: Drive) -> DriveSection:
         TableSection("drive-error-number", "Layout of an error number", _layout(links, drive)),
         TableSection("drive-responses", "Responses to an error", _responses(links, drive)),
         TableSection("drive-modules", "Modules in an error number", _modules(links, drive)),
-        TableSection("drive-commands", "Device commands", _commands(links, drive)),
+        TableSection(COMMANDS, "Device commands", _commands(links, drive)),
     )
     return DriveSection(drive.title, tuple(_facts(links, drive)), tuple(part for part in parts if part.table.rows))
 
@@ -45,6 +47,11 @@ def _facts(links: Links, drive: Drive) -> Iterator[Fact]:
     yield Fact("Maker", drive.manufacturer)
     yield Fact("Index of a code", noted(f"{drive.index_base} − code number", hexadecimal(drive.index_base)))
     yield Fact("Sources of the rule", joined([links.source(cite) for cite in drive.index_base_cites], "; "))
+    if drive.command_code is not None:
+        index = drive.index_base - drive.command_code
+        code = f"{CodeRef(drive.command_code)}, index {index} = {hexadecimal(index, _INDEX_BITS)}"
+        yield Fact("Device commands are written to", code)
+        yield Fact("Sources of the code", joined([links.source(cite) for cite in drive.command_code_cites], "; "))
 
 
 def _layout(links: Links, drive: Drive) -> Table:
@@ -75,8 +82,16 @@ def _modules(links: Links, drive: Drive) -> Table:
 
 
 def _commands(links: Links, drive: Drive) -> Table:
-    rows = tuple(Row((str(c.value), c.name, _source(links, c))) for c in drive.commands)
+    rows = tuple(
+        Row((command_text(drive, c), c.name, _source(links, c)), id=command_id(c.value)) for c in drive.commands
+    )
     return Table("commands", ("Value", "Command", "Source"), rows)
+
+
+def command_text(drive: Drive, command: DriveCommand) -> str:
+    """What is written for a command, "C00002 = 92"; the value alone where the code is not known."""
+    code = "" if drive.command_code is None else f"{CodeRef(drive.command_code)} = "
+    return f"{code}{command.value}"
 
 
 def _source(links: Links, entry: Response | DriveModule | DriveCommand) -> Prose:

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from generator.emit import eds
 from generator.emit.html.blocks import Fact, Group, Row, Table
 from generator.emit.html.filters import Filter, filter_of
-from generator.emit.html.ledger import concerns, group_id, group_title, kind_title
+from generator.emit.html.ledger import concerns, covers, group_id, group_title
 from generator.emit.html.links import Links
 from generator.emit.html.notes import is_slip
 from generator.emit.html.places import page_of
@@ -20,9 +20,11 @@ _ORIGINS = {"dump": "text dump"}
 
 @dataclass(frozen=True, slots=True)
 class ErrataView:
-    """Everything on the page; ``total`` is how many there are."""
+    """Everything on the page; ``total``: how many there are, of which ``contradictions`` and ``slips``."""
 
     total: str
+    contradictions: str
+    slips: str
     manuals: tuple[Fact, ...]
     counts: Table
     filter: Filter
@@ -32,9 +34,12 @@ class ErrataView:
 def all_errata(devices: Sequence[Links]) -> ErrataView:
     """View of the page; ``devices`` are those of the model, as seen from it."""
     ledger = [(links, erratum) for links in devices for erratum in links.device.errata]
+    slips = sum(is_slip(erratum) for _, erratum in ledger)
     group = Group("ledger", "All errata", Table("overview ledger", _HEAD, tuple(_row(*entry) for entry in ledger)))
     return ErrataView(
         total=str(len(ledger)),
+        contradictions=str(len(ledger) - slips),
+        slips=str(slips),
         manuals=tuple(Fact(one.device.order_code, (manual_link(one.device.manual.id),)) for one in devices),
         counts=_counts(devices),
         filter=filter_of([group], _FILTERED),
@@ -47,12 +52,13 @@ def _row(links: Links, erratum: Erratum) -> Row:
         (
             (links.erratum(erratum.id),),
             links.device.order_code,
-            kind_title(erratum),
+            group_title(erratum),
             (Piece(eds.printed(erratum), tag="s"), "; used: ", Piece(erratum.used_text, tag="b")),
             concerns(links, erratum),
             erratum.confidence,
             _ORIGINS.get(erratum.origin, erratum.origin),
-        )
+        ),
+        covers=covers(erratum),
     )
 
 

@@ -2,12 +2,12 @@
 
 from collections.abc import Iterator, Sequence
 
-from generator.emit.html.blocks import Anchor, Bullets, Entry, Fact, Group, Item, ItemList, Row, Table
+from generator.emit.html.blocks import Anchor, Asked, Bullets, Entry, Fact, Group, Item, ItemList, Row, Table
 from generator.emit.html.links import Links
 from generator.emit.html.notes import error_subject, notes
 from generator.emit.html.places import ERROR_KINDS, error_id, error_text
 from generator.emit.html.text import ELLIPSIS, NONE, Piece, Prose, joined, shown_origin, through
-from generator.model import Drive, ErrorEntry
+from generator.model import CodeRef, Drive, ErrorEntry
 
 _VARIANTS = ("Slot", "Number", "Decimal", "Response set in", "Source")
 _Variants = Sequence[ErrorEntry]
@@ -47,8 +47,15 @@ def _overview(links: Links, errors: Sequence[ErrorEntry]) -> Table:
         if with_sources:
             cells.append(links.source(error.cite))
         remarks = (links.prose(error.description),) if error.description and _is_plain(error) else ()
-        rows.append(Row(tuple(cells), remarks=remarks))
+        rows.append(Row(tuple(cells), remarks=remarks, covers=_covers(error)))
     return Table("overview errors", tuple(head), tuple(rows))
+
+
+def _covers(error: ErrorEntry) -> str:
+    """Every number of a run in both notations, and every code that sets a response."""
+    run = range(error.number, error.last + 1) if error.count > 1 else ()
+    numbers = [f"{error_text(error.kind, number)} {number}" for number in run]
+    return " ".join([*numbers, *map(str, error.adjustable_in)])
 
 
 def _overview_name(error: ErrorEntry) -> Prose:
@@ -85,6 +92,7 @@ def error_entry(links: Links, entry: _Variants) -> Entry:
         bullets=tuple(found for found in bullets if found.items),
         notes=notes(links, map(error_subject, entry)),
         printed=tuple(line for one in entry for line in _printed(one)),
+        asked=tuple(found for one in entry for found in _asked(links, one)),
     )
 
 
@@ -149,12 +157,25 @@ def _numbers(links: Links, error: ErrorEntry) -> Iterator[ItemList]:
     """Every number of a run with the code that sets its response, where each has one of its own."""
     if not has_own_places(error):
         return
-    items = []
-    for number, code in zip(range(error.number, error.last + 1), error.adjustable_in, strict=True):
-        anchor = _anchor(error, number)
-        own_id = anchor.id if number != error.number else ""
-        items.append(Item(Piece(anchor.text, f"#{anchor.id}"), (f"{number} ", links.code(code)), own_id))
+    items = [
+        Item(Piece(anchor.text, f"#{anchor.id}"), (f"{number} ", links.code(code)))
+        for number, anchor, code in _members(error)
+    ]
     yield ItemList(f"Number by number, {error.slot}" if error.slot else "Number by number", tuple(items))
+
+
+def _asked(links: Links, error: ErrorEntry) -> Iterator[Asked]:
+    """Every number of a run but the first, which the heading names."""
+    if has_own_places(error):
+        for number, anchor, code in list(_members(error))[1:]:
+            text = (Piece(anchor.text, tag="b"), f" = {number}, response set in ", links.code(code))
+            yield Asked(anchor.id, text)
+
+
+def _members(error: ErrorEntry) -> Iterator[tuple[int, Anchor, CodeRef]]:
+    """The numbers of a run, each with its anchor and the code that sets its response."""
+    for number, code in zip(range(error.number, error.last + 1), error.adjustable_in, strict=True):
+        yield number, _anchor(error, number), code
 
 
 def _printed(error: ErrorEntry) -> Iterator[str]:

@@ -46,7 +46,7 @@ def group_title(erratum: Erratum) -> str:
 
 
 def kind_title(erratum: Erratum) -> str:
-    """What kind of mistake it is, slips of the text dump as well."""
+    """What kind of mistake it is, also where only the text dump makes it."""
     return _KINDS.get(erratum.kind, erratum.kind)
 
 
@@ -56,7 +56,13 @@ def _group(links: Links, name: str, title: str, errata: Sequence[Erratum]) -> Gr
 
 
 def _overview_row(links: Links, erratum: Erratum) -> Row:
-    return Row((links.anchored(_anchor(erratum)), ", ".join(erratum.about_text), erratum.confidence))
+    cells = (links.anchored(_anchor(erratum)), ", ".join(erratum.about_text), erratum.confidence)
+    return Row(cells, covers=covers(erratum))
+
+
+def covers(erratum: Erratum) -> str:
+    """Everything that an entry concerns, one by one."""
+    return " ".join(map(str, erratum.about))
 
 
 def _anchor(erratum: Erratum) -> Anchor:

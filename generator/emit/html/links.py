@@ -7,7 +7,7 @@ from itertools import pairwise
 from typing import TypeVar
 
 from generator.emit.html.blocks import Anchor
-from generator.emit.html.places import Places, code_id, erratum_id, error_id, error_text, named_id, object_id
+from generator.emit.html.places import COMMANDS, Places, code_id, erratum_id, error_id, error_text, named_id, object_id
 from generator.emit.html.text import ELLIPSIS, Piece, Prose, joined, manual_link, place_of, prose
 from generator.model import Cite, Code, CodeRef, Device, DictionaryObject, ErrorEntry, ErrorRef, ObjectRef, Slot
 from generator.model.erratum import Subject
@@ -93,7 +93,8 @@ class Links:
     def code(self, ref: CodeRef) -> Piece:
         """Link to a code, to the subcode where it has one of that number."""
         if ref.number not in self._codes:
-            return Piece(str(ref))
+            drive = self.device.drive
+            return Piece(str(ref), self.href(COMMANDS) if drive and drive.command_code == ref.number else "")
         known = (ref.number, ref.subcode) in self._subcodes
         return Piece(str(ref), self.href(code_id(ref.number, ref.subcode if known else None)))
 

@@ -181,7 +181,7 @@ def _recorded(erratum: Erratum, subjects: Sequence[Subject]) -> list[Prose]:
         used = " / ".join(dict.fromkeys(_used(erratum, s) for s in subjects))
         places = [
             (f"{place.location}{_page(place.page)} prints ", Piece(place.printed, tag="s"))
-            for place in _own_places(erratum.places, subjects)
+            for place in _telling_places(erratum, subjects)
         ]
         return [*places, ("Used: ", Piece(used, tag="b"))]
     place = located(" ".join(erratum.place), None)
@@ -189,10 +189,21 @@ def _recorded(erratum: Erratum, subjects: Sequence[Subject]) -> list[Prose]:
     return [_statement(place, printed, used) for printed, used in dict.fromkeys(pairs)]
 
 
-def _own_places(places: Sequence[ErratumPlace], subjects: Sequence[Subject]) -> Sequence[ErratumPlace]:
-    """The places that name one of the subjects; where none does, all that the ledger lists."""
-    own = [place for place in places if any(s.name and s.name in place.location for s in subjects)]
-    return own or places
+def _telling_places(erratum: Erratum, subjects: Sequence[Subject]) -> Sequence[ErratumPlace]:
+    """The places that name one of the subjects or nothing else, those alone that differ from what is used.
+
+    Where no place does so, all that the ledger lists.
+    """
+    ours = {subject.name for subject in subjects}
+    others = {str(subject).removeprefix("E-") for subject in erratum.about} - ours if all(ours) else set()
+    own = [place for place in erratum.places if not any(_names(place, name) for name in others)]
+    own += [place for place in erratum.places if place not in own and any(_names(place, s.name) for s in subjects)]
+    differing = [place for place in own if place.printed != erratum.used_text]
+    return sorted(differing, key=erratum.places.index) or own or erratum.places
+
+
+def _names(place: ErratumPlace, name: str) -> bool:
+    return bool(name) and name in place.location
 
 
 def _printed(erratum: Erratum, subject: Subject) -> str:

@@ -38,7 +38,8 @@ def object_group(links: Links, name: str, title: str, entries: Sequence[Dictiona
 def _overview_row(links: Links, entry: DictionaryObject) -> Row:
     codes = links.codes_of(entry)
     cells = (entry.name, entry.object_type, str(len(entry.subindexes)))
-    return Row((links.anchored(_anchor(entry)), *cells, links.codes(codes) or NONE))
+    covers = f"{entry.index} {hexadecimal(entry.index, _INDEX_BITS)}"
+    return Row((links.anchored(_anchor(entry)), *cells, links.codes(codes) or NONE), covers=covers)
 
 
 def _anchor(entry: DictionaryObject) -> Anchor:

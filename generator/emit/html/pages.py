@@ -71,8 +71,15 @@ _LEADS = {
     "telegrams": "Offsets count bytes from 0; bit 0 is the least significant.",
     "errata": "What is printed wrong, what is used instead, why, and how sure that is.",
 }
-_FILTERED = {"codes": ("Data type", "Access"), "objects": ("Type",), "errors": ("Response",)}
-"""Parts whose entries have a page of their own each, with the columns by which their overviews are filtered."""
+_FILTERED = {
+    "codes": ("Data type", "Access"),
+    "objects": ("Type",),
+    "errors": ("Response",),
+    "errata": ("Confidence",),
+}
+"""Parts that are filtered, with the columns by which that can be done."""
+_PAGE_BY_PAGE = ("codes", "objects", "errors")
+"""Parts whose entries have a page of their own each."""
 _SCRIPTS = {"leds": ("panel.js",), "switches": ("panel.js",), "telegrams": (WIRE,), "errors": (WIRE,), "codes": (WIRE,)}
 """Scripts of the instruments of a part."""
 
@@ -242,7 +249,7 @@ def _device_pages(model: Model, links: Links, relations: Relations, offered: Off
             scripts=(*_SCRIPTS.get(part, ()), *((FILTER,) if found else ())),
         )
         yield Page(frame, "part", _part_view(model, links.on(frame.path), part, groups, found))
-        if part in _FILTERED:
+        if part in _PAGE_BY_PAGE:
             yield from _entry_pages(model, links, relations, nav, part)
     if device.drive:
         frame = device_frame(

@@ -8,6 +8,9 @@ from generator.model import Code, Device, DictionaryObject, ErrorEntry, SwitchGr
 
 T = TypeVar("T")
 
+COMMANDS = "drive-commands"
+"""Anchor of the list of device commands."""
+
 ERROR_KINDS = {
     "device": ("Device error", "Device errors"),
     "emergency": ("Emergency code", "Emergency codes"),
@@ -76,6 +79,11 @@ def named_id(kind: str, name: str, part: str = "") -> str:
 def switch_row_id(group: SwitchGroup, row: SwitchRow) -> str:
     """Anchor of a printed position of switches: ``switch-node-address.23``."""
     return named_id("switch", group.id, re.sub(r"[^a-z0-9]+", "-", row.value.lower()).strip("-"))
+
+
+def command_id(value: int) -> str:
+    """Anchor of a device command: ``drive-command-92``."""
+    return f"drive-command-{value}"
 
 
 def page_of(device: Device, part: str = "") -> str:

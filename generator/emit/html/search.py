@@ -7,8 +7,9 @@ from typing import Any
 from generator.emit.html.frame import Frame
 from generator.emit.html.links import Links
 from generator.emit.html.places import page_of
-from generator.emit.html.things import KINDS, Spot, Thing, things
-from generator.model import Device, Model
+from generator.emit.html.things import COUNT_WORDS, COUNTED, KINDS, LED_MARK, Spot, Thing, things
+from generator.emit.html.topics import ALSO
+from generator.model import Device, Drive, Model
 
 _EVENT = "search-data"
 """How the script hands over its data without a name that all scripts share."""
@@ -36,7 +37,13 @@ def search_data(model: Model, frames: Iterable[Frame]) -> str:
         "devices": [[device.id, device.order_code] for device in model.devices],
         "rows": [*_things(model), *_pages(model, frames)],
         "examples": _examples(model),
+        "fields": {drive.id: _fields(drive) for drive in model.drives},
         "reported": [_reported(device) for device in model.devices],
+        "leds": sorted({led.label.lower() for device in model.devices for it in device.indicators for led in it.leds}),
+        "led": [list(KINDS).index("led"), LED_MARK],
+        "counts": sorted(COUNT_WORDS),
+        "counted": COUNTED,
+        "also": ALSO,
     }
     text = json.dumps(data, ensure_ascii=False, separators=(",", ":"))
     return f'"use strict";\nwindow.dispatchEvent(new CustomEvent("{_EVENT}", {{ detail: {text} }}));\n'
@@ -91,13 +98,19 @@ def _pages(model: Model, frames: Iterable[Frame]) -> Iterator[list[Any]]:
 
 
 def _reported(device: Device) -> list[Any]:
-    """Mask of the error numbers in the list, and the fields that change at run time: label, bits, names of values."""
-    drive = device.drive
-    if drive is None or not device.error_mask:
-        return [0, []]
-    fields = dict(drive.error_fields)
-    names = {"response": {response.value: response.name for response in drive.responses}}
+    """Mask of the error numbers in the list, the drive that they are made by, the page that takes them apart."""
+    if device.drive is None or not device.error_mask:
+        return [0]
+    return [device.error_mask, device.drive.id, page_of(device, "errors")]
+
+
+def _fields(drive: Drive) -> list[Any]:
+    """Fields of an error number: label, lowest and highest bit, names of values, whether it changes at run time."""
+    names = {
+        "response": {response.value: response.name for response in drive.responses},
+        "module": {module.value: module.name for module in drive.modules},
+    }
     return [
-        device.error_mask,
-        [[name, fields[name].low, fields[name].high, names.get(name, {})] for name in drive.reported_fields],
+        [name, field.low, field.high, names.get(name, {}), int(name in drive.reported_fields)]
+        for name, field in drive.error_fields
     ]

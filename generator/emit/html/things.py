@@ -4,13 +4,16 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
+from generator.emit.html.drive import command_text
 from generator.emit.html.errors import has_own_places, shared_name
 from generator.emit.html.lamps import words
 from generator.emit.html.links import Links
 from generator.emit.html.places import (
+    COMMANDS,
     ERROR_KINDS,
     code_entries,
     code_id,
+    command_id,
     erratum_id,
     error_entries,
     error_id,
@@ -23,6 +26,7 @@ from generator.model import (
     BitField,
     CobId,
     Code,
+    CodeRef,
     DictionaryObject,
     ErrorEntry,
     Example,
@@ -45,6 +49,7 @@ KINDS = {
     "cob_id": ("COB-ID", "COB-IDs"),
     "led": ("LED", "LEDs"),
     "switch": ("DIP switches", "DIP switches"),
+    "command": ("Device command", "Device commands"),
     "telegram": ("Telegram", "Worked telegrams"),
     "layout": ("Telegram layout", "Telegram layouts"),
     "table": ("Table", "Tables"),
@@ -65,7 +70,20 @@ _FORMS = {
     Light.FLASH: ("flash", "flashes", "flashing"),
 }
 """What people call a light, beside the words of the reference."""
-_COUNTS = {1: "single", 2: "double", 3: "triple", 4: "quadruple"}
+_SAID = ("connector", "terminal")
+"""Kinds of tables that are looked for by their kind."""
+_COUNTS = {
+    1: ("single", "once", "one time"),
+    2: ("double", "twice", "two times"),
+    3: ("triple", "three times"),
+    4: ("quadruple", "four times"),
+}
+COUNT_WORDS = frozenset(word for said in _COUNTS.values() for word in " ".join(said).split())
+"""Words that say how often a light comes."""
+COUNTED = dict(zip(_FORMS[Light.BLINK], _FORMS[Light.FLASH], strict=True))
+"""What people call blinking, and what the reference calls it where somebody counts it."""
+LED_MARK = "|"
+"""Stands before what is said of each LED of a row, which begins with its label."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -144,6 +162,7 @@ def things(model: Model, links: Links) -> Iterator[Thing]:
         yield from _cob_ids(links, model.cob_ids)
     for table in device.indicators:
         yield from _led_rows(links, table)
+    yield from _commands(links)
     yield from _named(links)
 
 
@@ -234,18 +253,37 @@ def _led_rows(links: Links, table: IndicatorTable) -> Iterator[Thing]:
     for number, row in enumerate(table.rows, 1):
         pairs = [pair for pair in zip(table.leds, row.patterns, strict=True) if pair[1].light is not Light.ANY]
         seen = ", ".join(f"{led.label} {words(pattern)}" for led, pattern in pairs)
-        called = " ".join(_called(led, pattern) for led, pattern in pairs)
+        called = "".join(f" {LED_MARK} {_called(led, pattern)}" for led, pattern in pairs)
         spot = Spot(", ".join(led.label for led, _ in pairs), links.href(named_id("led", table.id, str(number))))
-        yield Thing("led", f"{seen}: {row.state}", f"{called} LED {row.meaning}", (spot,))
+        yield Thing("led", f"{seen}: {row.state}", f"LED {row.meaning}{called}", (spot,))
 
 
 def _called(led: Led, pattern: Pattern) -> str:
-    """What people call a pattern, colour first: "red double flash red flash red flashing"."""
+    """What people call a pattern, colour first: "BE flashes twice red double flash red flash twice"."""
     colour = pattern.colour or led.colour
     forms = [f"{colour} {form}" for form in _FORMS[pattern.light]]
     if pattern.light is Light.FLASH:
-        forms.insert(0, f"{colour} {_COUNTS.get(pattern.flashes or 1, '')} {_FORMS[Light.FLASH][0]}")
-    return " ".join([f"{led.label} {led.name}", *forms])
+        count = pattern.flashes or 1
+        single, *others = _COUNTS.get(count, ("",))
+        forms = [f"{colour} {single} {_FORMS[Light.FLASH][0]}", *forms]
+        forms += [*others, f"{count} times"]
+    return " ".join([f"{led.label} {words(pattern)} {led.name}", *forms])
+
+
+def _commands(links: Links) -> Iterator[Thing]:
+    """The list of device commands by the code that they are written to, and each by what is written."""
+    drive = links.device.drive
+    if drive is None or not drive.commands:
+        return
+    if drive.command_code is not None:
+        code = CodeRef(drive.command_code)
+        index = drive.index_base - code.number
+        keys = (Key("c", code.number), Key("i", index))
+        spot = Spot(str(code), links.href(COMMANDS), keys, (hexadecimal(index, _INDEX_BITS), str(index)))
+        yield Thing("command", KINDS["command"][1], "", (spot,))
+    for command in drive.commands:
+        spot = Spot(command_text(drive, command), links.href(command_id(command.value)))
+        yield Thing("command", command.name, "", (spot,))
 
 
 def _named(links: Links) -> Iterator[Thing]:
@@ -262,7 +300,7 @@ def _named(links: Links) -> Iterator[Thing]:
         yield _thing(links, "layout", layout.id, layout.name, f"{layout.protocol} {fields}")
     for table in device.tables:
         rows = " ".join(str(row[0]) for row in table.rows)
-        yield _thing(links, "table", table.id, table.name, rows)
+        yield _thing(links, "table", table.id, table.name, f"{rows} {table.kind}" if table.kind in _SAID else rows)
     for formula in device.formulas:
         yield _thing(links, "formula", formula.id, formula.name, formula.expression)
     for erratum in device.errata:

@@ -26,6 +26,10 @@ _TOPICS = {
 _TOPIC_OF = {kind: topic for topic, (_, kinds) in _TOPICS.items() for kind in kinds}
 
 
+ALSO = {"baudrate": "baud rate", "bitrate": "baud rate", "bit rate": "baud rate", "pinout": "connector pin"}
+"""Words of the trade for things that the manuals call otherwise."""
+
+
 def title_of(topic: str) -> str:
     """Heading of a topic."""
     return _TOPICS[topic][0]
