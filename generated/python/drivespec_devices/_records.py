@@ -22,9 +22,7 @@ from drivespec_devices._enums import Flags, Selection
 
 TYPE_CHECKING = False  # type checkers take it for True; it saves the time that importing typing costs
 if TYPE_CHECKING:
-    from typing import Any, TypeVar
-
-    _N = TypeVar("_N", int, Fraction)
+    from typing import Any
 
 __all__ = (
     "Access",
@@ -591,7 +589,8 @@ class Code(Record):
             raise ValueError(f"{value} does not fit into {self.data_type.name} of {self.designation}") from None
         if self.range is not None and exact not in self.range:
             raise ValueError(f"{value} lies outside {self.range} of {self.designation}")
-        wire = self._checked(exact * (self.scaling or 1))
+        wire = exact * (self.scaling or 1)
+        self._check(wire)
         nearest = int(abs(wire) + Fraction(1, 2))
         return nearest if wire >= 0 else -nearest
 
@@ -605,13 +604,13 @@ class Code(Record):
         if not self.data_type.is_number:
             raise ValueError(f"{self.designation} holds no number")
         scaling = self.scaling or 1
-        raw = self._checked(operator.index(raw))
+        raw = operator.index(raw)
+        self._check(raw)
         return raw // scaling if raw % scaling == 0 else Fraction(raw, scaling)
 
-    def _checked(self, raw: _N) -> _N:
-        if not self.data_type.lowest <= raw <= self.data_type.highest:
-            raise ValueError(f"{raw} does not fit into {self.data_type.name} of {self.designation}")
-        return raw
+    def _check(self, wire: int | Fraction) -> None:
+        if not self.data_type.lowest <= wire <= self.data_type.highest:
+            raise ValueError(f"{wire} does not fit into {self.data_type.name} of {self.designation}")
 
     def typed(self, raw: int, subcode: int = 0) -> Selection | Flags | int:
         """What a raw value means: the entry of the selection list (of the subcode, if that has its own), the bits, or
