@@ -181,6 +181,7 @@ def _canopen(canopen: CanOpenFacts, cob_ids: Sequence[CobId]) -> Json:
         "cob_ids": [
             {
                 "name": entry.name,
+                "title": entry.title,
                 "base": entry.base,
                 "broadcast": entry.broadcast,
                 "objects": [_object_key(ref) for ref in entry.objects],
@@ -452,6 +453,7 @@ def _layout(layout: Layout) -> Json:
         "id": layout.id,
         "name": layout.name,
         "protocol": layout.protocol,
+        "identifiers": list(layout.identifiers),
         "description": layout.description,
         "fields": _layout_fields(layout.fields, 0),
         "origin": layout.origin.value,
@@ -478,6 +480,7 @@ def _layout_fields(fields: Sequence[Field], start: int | None) -> list[Json]:
                 "values": _options(field.values),
                 "bits": _fields(field.bits),
                 "bit_values": {name: _options(options) for name, options in field.bit_values},
+                "errors": field.errors,
                 "count": field.count,
                 "fields": _layout_fields(field.fields, None),
                 "description": field.description,

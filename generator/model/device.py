@@ -1,6 +1,7 @@
 """Devices, base drives and the whole model."""
 
 from dataclasses import dataclass
+from itertools import pairwise
 
 from generator.model.citation import Cite, Manual, Origin, Where
 from generator.model.code import Code
@@ -162,3 +163,9 @@ class Model:
     standard_objects: tuple[StandardObject, ...]
     cob_ids: tuple[CobId, ...]
     pins: tuple[Pin, ...]
+
+    @property
+    def highest_node(self) -> int:
+        """Highest node address for which the identifiers of the predefined connection set leave room."""
+        bases = sorted({entry.base for entry in self.cob_ids})
+        return min((after - before for before, after in pairwise(bases)), default=1) - 1
