@@ -280,7 +280,9 @@ def _read(
             for inner, entry in zip(decided, value, strict=False):
                 _read(inner, target.fields, entry, like, found, free)
         elif isinstance(decided, Filler) and target is not None:
-            known = None if value == OPEN or isinstance(value, tuple) else _bytes_or_number(value, target, like)
+            # Only a value can be a text; what else stands in bytes is a number.
+            counts = like.data_type.is_number or decided.what is not What.VALUE
+            known = None if value == OPEN or isinstance(value, tuple) else _bytes_or_number(value, target, counts)
             if decided.what is What.FREE:
                 free[name] = known if isinstance(known, int) else None
             elif isinstance(known, int) and decided.low is not None:
@@ -290,8 +292,8 @@ def _read(
                 found[decided.what] = known
 
 
-def _bytes_or_number(value: int | str, target: Field, like: Call) -> int | bytes:
+def _bytes_or_number(value: int | str, target: Field, counts: bool) -> int | bytes:
     if isinstance(value, int):
         return value
     raw = value.encode("latin-1") if target.type is FieldType.TEXT else bytes.fromhex(value)
-    return int.from_bytes(raw, "big" if target.big else "little") if like.data_type.is_number else raw
+    return int.from_bytes(raw, "big" if target.big else "little") if counts else raw

@@ -62,7 +62,8 @@ def published(root: Path, model: Model) -> Model:
         )
         for entry, like in zip(canopen["cob_ids"], model.cob_ids, strict=True)
     )
-    return replace(model, devices=devices, drives=tuple(drives.values()), cob_ids=cob_ids)
+    nodes = next(device.canopen.node_addresses for device in devices if device.canopen)
+    return replace(model, devices=devices, drives=tuple(drives.values()), cob_ids=cob_ids, node_addresses=nodes)
 
 
 def document(root: Path, device: Device) -> Json:
@@ -98,6 +99,7 @@ def canopen_of(entry: Json, like: CanOpenFacts) -> CanOpenFacts:
         baud_rates=tuple(entry["bit_rates"]),
         granularity=entry["pdo_granularity"],
         node_address=entry["node_address_code"],
+        node_addresses=range(entry["node_addresses"]["first"], entry["node_addresses"]["last"] + 1),
         boot_up_master=entry["boot_up_master"],
     )
 

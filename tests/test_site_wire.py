@@ -14,7 +14,7 @@ from test_c_telegrams import message, mutated
 from visitor import Visitor
 
 from generator.codec import CodecError, decode, encode
-from generator.emit.html.places import code_entries, error_id, object_id, page_of
+from generator.emit.html.places import code_entries, error_id, error_text, object_id, page_of
 from generator.model import Code, DataType, Device, Does, Example, Model, NodeRelative, Service, Values
 from generator.model.telegram import OPEN, Value
 from generator.wire import Call, Octets, build, carries
@@ -483,11 +483,15 @@ def test_the_decoder_says_what_a_telegram_means(visitor: Visitor) -> None:
     assert result.locator("a", has_text="C13351").get_attribute("href") == "e94aycca-c13351.html"
     assert "not in the selection list" in decoded("2F D8 2B 00 63 00 00 00")
     assert "is UNSIGNED_8" in decoded("23 D8 2B 00 03 00 00 00")
-    assert "is not one of SDO rx" in decoded("2F D8 2B 00 03 00 00 00", "702")
+    other = decoded("2F D8 2B 00 03 00 00 00", "702")
+    assert "0x702 = NMT error control" in other and "has 8 bytes like these" in other and "Write by SDO" not in other
+    page.locator("#d-layout").select_option("sdo")
+    assert "is not one of SDO rx" in result.inner_text()
+    page.locator("#d-layout").select_option("")
     assert "cannot be written" in decoded("23 00 10 00 00 00 00 00", "601")
     refused = decoded("581   [8]  80 00 10 00 41 00 04 06")
     assert "Error response by SDO" in refused and "Object not mapped" in refused
-    assert result.locator("a", has_text="0x6040041").get_attribute("href") == "e94aycca-abort-0x06040041.html"
+    assert result.locator("a", has_text="0x06040041").get_attribute("href") == "e94aycca-abort-0x06040041.html"
     assert "Emergency telegram" in decoded("00 10 01 00 1B 00 7B 00", "85")
     assert "not bytes in hexadecimal" in decoded("4 0 zz")
     page.locator("#d-layout").select_option("sdo")
@@ -508,6 +512,177 @@ def test_the_decoder_reads_strings_and_error_telegrams(visitor: Visitor, model: 
     page.locator("#d-bytes").fill("B0 01 29 C7 06 05 00 11")
     assert "Invalid subindex" in page.locator("#decoder dt:text-is('Error') + dd").inner_text()
     assert "C13880/1" in page.locator("#decoder dt:text-is('Parameter') + dd").inner_text()
+
+
+@pytest.mark.parametrize(
+    ("data", "name"),
+    [
+        ("00 81 00 01 44 01 00 03", "Read error of PROFIdrive"),
+        ("00 82 00 01 44 01 00 11", "Write error of PROFIdrive"),
+        ("05 81 00 01 44 02 00 03 00 01", "response to a read error"),
+    ],
+)
+def test_error_responses_of_profidrive_are_read(visitor: Visitor, model: Model, data: str, name: str) -> None:
+    page = visitor.open("e94aycpm-telegrams.html")
+    page.locator("#d-bytes").fill(data)
+    assert name in page.locator("#decoder .found").inner_text()
+    assert " ".join(page.locator("#decoder .bytes code").all_inner_texts()) == data
+    number = int(data[-5:].replace(" ", ""), 16)
+    if data[15:17] == "01":
+        error = next(e for e in the_device(model, "e94aycpm").errors if (e.kind, e.number) == ("dpv1", number))
+        assert error.name in page.locator("#decoder dt:text-is('Error') + dd").inner_text()
+
+
+def test_what_cannot_be_read_leaves_nothing_of_before(visitor: Visitor) -> None:
+    """Any exception, here one that is forced, takes the last decoding away and is said."""
+    page = visitor.open("e94aycca-telegrams.html")
+    page.locator("#d-bytes").fill("605#40C25F0000000000")
+    assert page.locator("#decoder .bytes").count() == 1
+    page.evaluate("() => { document.getElementById('wire-data').codec.data.layouts.sdo.fields = null; }")
+    page.locator("#d-bytes").fill("585#43C25F002B000000")
+    assert page.locator("#decoder .result").inner_text() == "The telegram could not be read."
+    assert visitor.wrong.pop() and not visitor.wrong
+
+
+@pytest.mark.parametrize(
+    ("device", "line", "name", "said"),
+    [
+        ("e94aycca", "185#0105", "TPDO1", "0x185 = TPDO1: Process data from the device"),
+        ("e94aycca", "205#0F00", "RPDO1", "Process data to the device"),
+        ("e94aycca", "605#40181001", "SDO rx", "No telegram of SDO rx has 4 bytes like these."),
+        ("e94aycca", "705#00", "Heartbeat telegram", "Boot-up"),
+        ("e94aycca", "705#05", "Node guarding response", "Operational"),
+        ("e94aycca", "605#7000000000000000", "Read segment request", "toggle bit 1"),
+        ("e94aycca", "585#0030312E30302E30", "Read segment response", "Further telegrams follow"),
+        ("e94aycca", "605#43C25F002B000000", "Parameter data telegram", "No service of this device sends just these"),
+        ("e94aycca", "000#0105", "Network management telegram (NMT)", "Start Remote Node"),
+        ("e94aycca", "080#", "SYNC", "Synchronisation"),
+        ("servo931", "705#7F", "Heartbeat telegram", "Pre-operational"),
+        ("servo931", "305#00", "Process data telegram", "RPDO2"),
+    ],
+)
+def test_the_identifier_decides_what_a_telegram_is(
+    visitor: Visitor, device: str, line: str, name: str, said: str
+) -> None:
+    page = visitor.open(f"{device}-telegrams.html")
+    page.locator("#d-bytes").fill(line)
+    assert page.locator("#decoder .found").inner_text() == name
+    assert said in page.locator("#decoder .result").inner_text()
+    nodes = page.locator("#decoder dt:text-is('Node address') + dd").all_inner_texts()
+    assert nodes == ([] if line.startswith("0") else ["5"])
+    identifier, _, data = line.partition("#")
+    assert "".join(page.locator("#decoder .bytes code").all_inner_texts()).replace(" ", "") == data
+    page.locator("#d-bytes").fill(spaced(bytes.fromhex(data)))
+    page.locator("#d-id").fill(identifier)
+    assert page.locator("#decoder .found").count() == bool(data)
+    assert not data or page.locator("#decoder .found").inner_text() == name
+
+
+def test_printed_identifiers_lead_to_the_layouts_of_their_examples(visitor: Visitor, model: Model) -> None:
+    seen = 0
+    for device in model.devices:
+        page = visitor.open(f"{device.id}-telegrams.html")
+        for example in device.examples:
+            if example.identifier is None or None in example.data:
+                continue
+            page.locator("#d-bytes").fill(f"{example.identifier:03X}#{bytes(o or 0 for o in example.data).hex()}")
+            assert page.locator("#decoder dt:text-is('Layout') + dd").inner_text() == example.layout
+            nodes = page.locator("#decoder dt:text-is('Node address') + dd").all_inner_texts()
+            assert nodes == ([] if example.node is None else [str(example.node)])
+            seen += 1
+    assert seen > 15
+
+
+def test_layouts_without_an_identifier_are_values_alone(visitor: Visitor) -> None:
+    page = visitor.open("e94aycca-telegrams.html")
+    page.locator("#d-bytes").fill("E8 03 02 05")
+    assert "Node guarding entry" in page.locator("#decoder .result").inner_text()
+    page.locator("#d-id").fill("7FF")
+    shown = page.locator("#decoder .result").inner_text()
+    assert "0x7FF is not in the predefined connection set" in shown and "Node guarding entry" not in shown
+
+
+def test_error_numbers_within_telegrams_are_named(visitor: Visitor, model: Model) -> None:
+    drive = next(device.drive for device in model.devices if device.id == "e94aycca")
+    assert drive is not None
+    low = dict(drive.error_fields)["response"].low
+    responses = {response.value: response.name for response in drive.responses}
+    page = visitor.open("e94aycca-telegrams.html")
+    result = page.locator("#decoder .result")
+    for response in (0, max(responses)):
+        number = 0x009E0005 | response << low
+        page.locator("#d-bytes").fill(f"085#001001{0:02X}{struct.pack('<I', number).hex()}")
+        assert f"{response}: {responses[response]}" in result.inner_text()
+        card = result.locator(".card a").first
+        assert card.inner_text() == "0x009e0005"
+        assert (card.get_attribute("href") or "").startswith("e94aycca-e-0x009e0000.html")
+        assert "heartbeat error" in result.locator(".card").inner_text()
+    page.locator("#d-bytes").fill("085#0000000000000000")
+    assert result.locator(".card").count() == 0 and result.locator(".bytes").count() == 1
+    page = visitor.open("e94aycen-telegrams.html")
+    page.locator("#d-bytes").fill("01 82 80 00 14 00 00 00 02 90 00 00 3D 00" + " 00" * 14)
+    shown = page.locator("#decoder .result")
+    assert "0x9002 No memory available" in shown.locator(".bytes").inner_text() and "36866" not in shown.inner_text()
+    assert shown.locator(".card a").first.get_attribute("href") == "e94aycen-gci-0x9002.html"
+
+
+def test_decoded_error_numbers_have_the_digits_of_their_lists(visitor: Visitor, model: Model, site: Path) -> None:
+    device = the_device(model, "e94aycca")
+    page = visitor.open("e94aycca-telegrams.html")
+    for error in device.errors:
+        if error.kind == "sdo_abort":
+            page.locator("#d-bytes").fill(f"581#80001000{struct.pack('<I', error.number).hex()}")
+            shown = page.locator("#decoder dt:text-is('Error') + dd")
+            assert shown.inner_text().startswith(f"0x{error.number:08x} ")
+            assert (site / (shown.locator("a").get_attribute("href") or "")).is_file()
+
+
+def test_the_builder_refuses_node_addresses_that_no_node_can_have(visitor: Visitor) -> None:
+    page = visitor.open("e94aycca-telegrams.html")
+    wrong = page.locator("#builder .wrong")
+    for node in ("0", "128", "200", "-1", "1000", "x"):
+        fill(page, node=node)
+        assert wrong.inner_text() == f"'{node}' is no node address: they go from 1 to 127."
+        assert page.locator("#builder .telegram-bytes").count() == 0
+    for node, identifier in (("1", "0x601"), ("127", "0x67F"), ("", "0x600 + node address")):
+        fill(page, node=node)
+        assert page.locator("#builder .identifier").inner_text() == identifier and wrong.count() == 0
+
+
+@pytest.mark.parametrize(
+    ("typed", "data", "said"),
+    [
+        ("1400.01", "40 00 14 01", "Read as I-1400; it could also be C01400"),
+        ("i1018", "40 18 10 01", ""),
+        ("2BD8", "40 D8 2B 00", ""),
+        ("2BD8h", "40 D8 2B 00", ""),
+        ("1018", "40 18 10 01", "Read as I-1018; it could also be C01018"),
+        ("1008", "40 0F 5C 00", "Read as C01008; it could also be index 0x03F0 or index 0x1008."),
+        ("24575", "40 FF 5F 00", ""),
+        ("13350", "40 D9 2B 00", ""),
+        ("C13351 CAN baud rate", "40 D8 2B 00", ""),
+    ],
+)
+def test_the_builder_reads_numbers_as_the_search_does(visitor: Visitor, typed: str, data: str, said: str) -> None:
+    page = visitor.open("e94aycca-telegrams.html")
+    fill(page, code=typed)
+    assert built(page) == f"{data} 00 00 00 00"
+    known = page.locator("#b-known").inner_text()
+    assert said in known and ("Read as" in known) == bool(said)
+    again = visitor.open(page.url.rpartition("/")[2])
+    assert built(again) == f"{data} 00 00 00 00"
+
+
+def test_error_numbers_have_an_end(visitor: Visitor, model: Model) -> None:
+    for device in model.devices:
+        page = visitor.open(f"{device.id}-errors.html")
+        end = 16 ** max(len(error_text(error.kind, 0)) - 2 for error in device.errors)
+        for text in ("99999999999", "0x0123456789ABCDEF", str(end), f"0x{end:X}"):
+            page.locator("#e-number").fill(text)
+            assert f"'{text}' is too long" in page.locator("#number .wrong").inner_text()
+            assert page.locator("#number .found").count() == 0
+        page.locator("#e-number").fill(str(end - 1))
+        assert f"0x{end - 1:X}" in page.locator("#number .found").inner_text()
 
 
 def test_error_numbers_are_taken_apart(visitor: Visitor, model: Model, site: Path) -> None:
@@ -580,6 +755,22 @@ def test_the_converter_shows_the_other_slot(visitor: Visitor) -> None:
     assert again.locator("#c-index").input_value() == "11225"
     page.locator("#c-index").fill("30000")
     assert page.locator("#converter .wrong").is_visible()
+
+
+def test_the_converter_knows_objects_and_other_notations(visitor: Visitor) -> None:
+    page = visitor.open("e94aycca-codes.html")
+    shown = page.locator("#converter .result")
+    page.locator("#c-hex").fill("1018")
+    assert "I-1018 Identity object" in shown.inner_text() and "not in this manual" not in shown.inner_text()
+    assert shown.locator("a").first.get_attribute("href") == "e94aycca-i-1018.html"
+    again = visitor.open(page.url.rpartition("/")[2])
+    assert "I-1018" in shown.inner_text() and again.locator("#c-index").input_value() == "4120"
+    page.locator("#c-code").fill("1018")
+    assert "C01018, not in this manual" in shown.inner_text() and "Could also be\nI-1018" in shown.inner_text()
+    page.locator("#c-code").fill("2BD8")
+    assert shown.locator("a").first.get_attribute("href") == "e94aycca-c13351.html"
+    page.locator("#c-hex").fill("13350")
+    assert "Could also be\nC13350" in shown.inner_text() and page.locator("#converter .wrong").is_visible()
 
 
 def test_without_scripts_there_are_no_controls(browser: Browser, site: Path) -> None:

@@ -120,7 +120,7 @@ def device(
     known = {CodeRef(c.number, s.number) for c in codes for s in c.subcodes} | {c.ref for c in codes}
     error_frame = error_table.Frame(slots, base, known, index)
     roots = {kind: file.root for kind, file in files.items()}
-    layouts = telegram_table.layouts(roots["telegrams"], index) if "telegrams" in roots else ()
+    layouts = telegram_table.layouts(roots["telegrams"], standards.cob_ids, index) if "telegrams" in roots else ()
     tables = panel.tables(roots["tables"], index, standards.connectors) if "tables" in roots else ()
     service_frame = service_table.Frame(layouts, tables, standards.cob_ids, index)
     version = root.child("version")

@@ -88,6 +88,7 @@ def _standard(file: SourceFile, manuals: Mapping[str, Manual]) -> Standards:
     cob_ids = tuple(
         CobId(
             name=str(node.get("name")),
+            title=str(node.get("title")),
             base=int(node.get("base")),
             broadcast=bool(node.get("broadcast")),
             objects=tuple(

@@ -1,24 +1,29 @@
 """Layouts of telegrams and the manual's examples."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 from generator.diagnostics import suggestion
 from generator.elaborate.codes import ErrataIndex
-from generator.elaborate.common import options, origin, runs, unique
-from generator.model import BitField, Example, Field, FieldType, Layout, Option, Sizes, Values
+from generator.elaborate.common import optional_text, options, origin, runs, unique
+from generator.model import BitField, CobId, Example, Field, FieldType, Layout, Option, Sizes, Values
 from generator.model.telegram import OPEN, Value
 from generator.tree import Node
 
 _REST = "rest"
 
 
-def layouts(root: Node, errata: ErrataIndex) -> tuple[Layout, ...]:
-    """Layouts of a device's telegrams.yaml."""
-    return tuple(_layout(node, errata) for node in unique(root, "layouts"))
+def layouts(root: Node, cob_ids: Sequence[CobId], errata: ErrataIndex) -> tuple[Layout, ...]:
+    """Layouts of a device's telegrams.yaml; ``cob_ids``: the predefined connection set."""
+    names = [cob_id.name for cob_id in cob_ids]
+    return tuple(_layout(node, names, errata) for node in unique(root, "layouts"))
 
 
-def _layout(node: Node, errata: ErrataIndex) -> Layout:
+def _layout(node: Node, names: Sequence[str], errata: ErrataIndex) -> Layout:
+    for name in node.texts("identifiers"):
+        if name not in names:
+            hint = suggestion(name, names, "identifiers")
+            node.problems.add("name-unknown", node.at("identifiers"), f"there is no identifier '{name}'", hint=hint)
     big = node.get("byte_order", "little") == "big"
     return Layout(
         id=str(node.get("id")),
@@ -30,6 +35,7 @@ def _layout(node: Node, errata: ErrataIndex) -> Layout:
         cite=node.cite(),
         errata=errata.of(f"layout:{node.get('id')}"),
         where=node.at("id"),
+        identifiers=node.texts("identifiers"),
     )
 
 
@@ -73,6 +79,7 @@ def _field(node: Node, name: str, big: bool, known: list[str], sized: Mapping[st
         bit_values=tuple(_bit_values(node)),
         description=str(node.get("description", "")).strip(),
         where=node.at("name"),
+        errors=optional_text(node, "errors"),
     )
 
 

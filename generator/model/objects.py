@@ -113,9 +113,13 @@ class StandardObject:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CobId:
-    """Entry of the predefined connection set: COB-ID = ``base`` + node address, ``base`` alone of a ``broadcast``."""
+    """Entry of the predefined connection set: COB-ID = ``base`` + node address, ``base`` alone of a ``broadcast``.
+
+    ``title`` says what its telegrams are for.
+    """
 
     name: str
+    title: str
     base: int
     broadcast: bool
     objects: tuple[ObjectRef, ...]

@@ -46,7 +46,8 @@ class Field:
 
     ``length``: bytes; a name means the value of that earlier field, ``None`` up to the end of the telegram.  ``sizes``
     takes its place where the length depends on another field.  ``count``: of a group, the earlier field that says how
-    often it repeats, ``None`` to the end.  ``bits``: parts of a number.  ``big``: high byte first.
+    often it repeats, ``None`` to the end.  ``bits``: parts of a number.  ``big``: high byte first.  ``errors``: kind of
+    the error numbers that it holds.
     """
 
     name: str
@@ -63,11 +64,15 @@ class Field:
     bit_values: tuple[tuple[str, tuple[Option, ...]], ...]
     description: str
     where: Where
+    errors: str | None = None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Layout:
-    """The fields of a telegram in the order of its bytes."""
+    """The fields of a telegram in the order of its bytes.
+
+    ``identifiers``: names of its COB-IDs in the predefined connection set, beside those that services say.
+    """
 
     id: str
     name: str
@@ -78,6 +83,7 @@ class Layout:
     cite: Cite
     errata: tuple[str, ...]
     where: Where
+    identifiers: tuple[str, ...] = ()
 
 
 Value = int | str | tuple["Values", ...]

@@ -253,7 +253,8 @@
       let value = values[name] ?? null;
       if (typeof value === "string") {
         const bytes = field.type === "text" ? codePoints(value) : unhex(value);
-        value = isNumber(like.type) ? fromBytes(bytes, field.big) : bytes;
+        // Only a value can be a text; what else stands in bytes is a number.
+        value = isNumber(like.type) || what !== "VALUE" ? fromBytes(bytes, field.big) : bytes;
       }
       if (what === "FREE") call.free[name] = value;
       else if (SLOTS[what] && value !== null) {
@@ -343,7 +344,17 @@
     const fields = Object.fromEntries([...form.querySelectorAll("[name]")].map((control) => [control.name, control]));
     // What the page shows before anything is typed.
     const idle = [...result.children];
-    return { form, fields, idle, show: (...children) => result.replaceChildren(...children.filter((child) => child !== null)) };
+    const show = (...children) => result.replaceChildren(...children.filter((child) => child !== null));
+    // What cannot be read leaves nothing of what stood there before.
+    const guarded = (update) => (...given) => {
+      try {
+        update(...given);
+      } catch (error) {
+        show(messages([section.dataset.failed]));
+        throw error;
+      }
+    };
+    return { form, fields, idle, show, guarded };
   }
 
   // ---- Parameters of the page of telegrams.
@@ -360,20 +371,34 @@
   const labelIn = (pairs, value) => pairs?.find(([number]) => BigInt(number) === value)?.[1];
   const parameterOf = (call) => data.parameters.find((it) => (call.code !== null && call.code !== undefined ? BigInt(it.code ?? -1) === call.code : BigInt(it.index) === call.index));
 
-  // What a person names: a code, an object, or an index alone; null where the text is neither.
+  // What a person names: a code, an object, or an index alone, as the search reads it; null where the text is neither.
+  // What is known comes before what is likely; others: what else the text may mean, where that is not plain.
   function named(text) {
-    const [whole, sub = ""] = text.trim().replace(/^(?:pnu\s+|p-)/i, "PNU-").split(/\s/)[0].split("/");
-    const part = sub ? typed(sub) : null;
+    const plainly = text.trim().replace(/^p-/i, "pnu-");
+    const [first] = plainly.replace(/^pnu\s+/i, "pnu-").split(/\s/);
+    const [whole, sub = ""] = first.split("/");
     const known = data.parameters.find((it) => it.key.toLowerCase() === whole.toLowerCase());
-    if (known) return { ...address(known), known, part };
-    let found = /^c0*(\d{1,5})$/i.exec(whole);
-    if (found) return { ...ofCode(BigInt(found[1])), part };
-    found = /^(?:i-|0x)([0-9a-f]{1,4})$|^([0-9a-f]{1,4})h$/i.exec(whole);
-    if (found) return { ...ofIndex(BigInt(`0x${found[1] ?? found[2]}`)), part };
-    if (!/^\d{1,5}$/.test(whole)) return null;
-    const value = BigInt(whole);
-    const code = ofCode(value);
-    return { ...(code.known || data.base !== null && !parameterOf({ index: value }) ? code : ofIndex(value)), part };
+    if (known) return { ...address(known), known, part: sub ? typed(sub) : null, said: known.key, others: [] };
+    const all = [plainly, first].map(meant).find((found) => found.length);
+    if (!all) return null;
+    const best = all.find((it) => it.known) ?? all[0];
+    const plain = best.known && best === all[0];
+    const part = best.parts.find((number) => best.known && ownOf(best.known, BigInt(number))) ?? best.parts[0];
+    return { ...best, part: part === undefined ? null : BigInt(part), others: all.filter((it) => it !== best && (it.known || !plain)) };
+  }
+
+  // Every parameter that a text may mean.
+  function meant(text) {
+    const found = [];
+    for (const { spaces, number, parts } of readings(text.toLowerCase()).filter((it) => Number.isSafeInteger(it.number))) {
+      for (const space of spaces) {
+        const place = space === "c" ? ofCode(BigInt(number)) : "ip".includes(space) ? ofIndex(BigInt(number)) : null;
+        if (!place || place.index === null || place.index < 1n || place.index > highest("UNSIGNED16")) continue;
+        const said = place.known?.key ?? (space === "c" ? designation(number) : `index ${inHex(place.index, 4)}`);
+        if (!found.some((it) => it.index === place.index)) found.push({ ...place, parts, said });
+      }
+    }
+    return found;
   }
 
   const address = (known) => ({ index: BigInt(known.index), code: known.code === undefined ? null : BigInt(known.code) });
@@ -416,6 +441,36 @@
     return found;
   }
 
+  // ---- Error numbers: found in the lists of the manual, shown with their parts.
+
+  const masked = (kind, value) => (kind === "device" && data.mask !== undefined ? value & BigInt(data.mask) : value);
+  const holds = ([kind, first, last], value) => value >= 0n && BigInt(first) <= masked(kind, value) && masked(kind, value) <= BigInt(last);
+  const errorOf = ({ kind, error }) => data.errors.find((entry) => entry[0] === kind && holds(entry, error));
+  const errorText = (kind, value) => `0x${value.toString(16).padStart(data.digits[kind], "0")}`;
+
+  const errorParts = (value) => facts(data.fields.map(([name, low, high]) => {
+    const part = slice(value, low, high);
+    const label = data.values[name]?.[part];
+    return [name[0].toUpperCase() + name.slice(1), `${part}${part > 9n ? ` = ${inHex(part)}` : ""}${label ? `: ${label}` : ""}`];
+  }));
+
+  function errorCard([kind, first, last, name, href, more], value) {
+    const own = masked(kind, value);
+    const place = Number(own - BigInt(first));
+    const anchor = more.each && place ? `${href.split("#")[0]}#${more.each}${errorText(kind, own).slice(2)}` : href;
+    const code = more.codes?.length === last - first + 1 ? more.codes[place] : null;
+    const codes = code ? [code] : more.codes ?? [];
+    return make("div", { class: "card" },
+      make("p", {}, link(anchor, errorText(kind, own)), ` ${name}`),
+      facts([
+        ["List", data.kinds[kind]],
+        more.slot ? ["Slot", more.slot] : null,
+        last > first ? ["In the run", `${place + 1} of ${last - first + 1}`] : null,
+        more.response ? ["Preset response", more.response] : null,
+        codes.length ? ["Response set in", ...codes.flatMap(([text, target], nth) => [nth ? ", " : "", link(target, text)])] : null,
+      ]));
+  }
+
   // ---- Labelled bytes.
 
   function flat(fillings, path, into) {
@@ -431,6 +486,7 @@
     if (value === null) return "open";
     const label = typeof value === "bigint" ? labelIn(span.field.values, value) : undefined;
     if (label) return label;
+    if (span.field.errors) return value ? `${errorText(span.field.errors, value)} ${errorIn(span)?.[3] ?? "not in this manual"}` : "";
     const fillings = match ? flat(match.message.values, "", {}) : {};
     const filling = fillings[span.path];
     const decided = filling === undefined ? undefined : chosen(filling, match.call);
@@ -465,7 +521,15 @@
     }));
   }
 
-  const errorOf = (call) => data.errors.find(([kind, first, last]) => kind === call.kind && BigInt(first) <= call.error && call.error <= BigInt(last));
+
+  const errorIn = ({ field, values }) => errorOf({ kind: field.errors, error: values[field.name] });
+
+  // Error numbers that stand in fields of their own, as the decoder of error numbers shows them.
+  const errorsIn = (spans) => spans.filter((span) => span.field.errors && span.values[span.field.name]).flatMap((span) => {
+    const value = span.values[span.field.name];
+    const entry = errorIn(span);
+    return [span.field.errors === "device" && data.fields ? errorParts(value) : null, entry ? errorCard(entry, value) : null];
+  });
 
   function parameterLink(call) {
     const parameter = parameterOf(call);
@@ -484,7 +548,7 @@
   function startBuilder() {
     const it = instrument("builder");
     if (!it) return;
-    const { form, fields, show } = it;
+    const { form, fields, show, guarded } = it;
     const state = asked();
     const free = form.querySelector(".free");
     const note = (id, text) => { document.getElementById(id).textContent = text; };
@@ -535,7 +599,8 @@
         fields.option.replaceChildren(make("option", { value: "" }, "another value"), ...list.map(([value, label]) => make("option", { value: String(value) }, `${value}: ${label}`)));
         fields.value.value = initial();
       }
-      note("b-known", known && place ? `${about.key}${sub ? `/${sub}` : ""} ${about.name}${about.subName ? `: ${about.subName}` : ""}; ${about.spelled ?? about.type}, index ${place.index} = ${inHex(place.index, 4)}` : place?.index != null ? `Index ${place.index} = ${inHex(place.index, 4)}; not in this manual, so choose its data type and scaling.` : "");
+      const read = place?.others.length ? ` Read as ${place.said}; it could also be ${place.others.map((it) => it.said).join(" or ")}.` : "";
+      note("b-known", known && place ? `${about.key}${sub ? `/${sub}` : ""} ${about.name}${about.subName ? `: ${about.subName}` : ""}; ${about.spelled ?? about.type}, index ${place.index} = ${inHex(place.index, 4)}${read && `.${read}`}` : place ? `Index ${place.index} = ${inHex(place.index, 4)}; not in this manual, so choose its data type and scaling.${read}` : "");
       note("b-limits", about.low === undefined ? "" : `From ${about.low} to ${about.high}${unit(about)}.`);
       form.querySelector("[data-shows=unit]").textContent = about.unit ? `in ${about.unit}` : "";
     }
@@ -544,7 +609,7 @@
       if (about.signature) return about.signature;
       if (!about.default) return about.low ?? (listOf(about).length ? String(listOf(about)[0][0]) : "0");
       const [value, rule] = about.default;
-      if (rule) return String(value + Number(fields.node?.value || 0));
+      if (rule) return String(BigInt(value) + (typed(fields.node?.value ?? "") ?? 0n));
       return typeof value === "string" ? value : unscaled(BigInt(value), BigInt(about.scaling ?? 1));
     }
 
@@ -581,7 +646,7 @@
       return scaled(text, factor) ?? fail(factor === 1n ? `'${text}' is not a whole number.` : `'${text}' times ${factor} is not a whole number.`);
     }
 
-    function update() {
+    const update = guarded(() => {
       changeFacts();
       changeService();
       const place = target();
@@ -592,7 +657,9 @@
       let call = {};
       try {
         const sub = typed(fields.sub.value);
-        if (!place || place.index === null) fail("Name a code, an object or an index; the field lists those that are known.");
+        const node = fields.node?.value.trim() ?? "";
+        if (node && !isNode(typed(node))) fail(`'${node}' is no node address: they go from ${data.nodes.join(" to ")}.`);
+        if (!place) fail("Name a code, an object or an index; the field lists those that are known.");
         if (sub === null || sub < 0n) fail("The subcode is a number, 0 where there is none.");
         const chosenFree = {};
         for (const input of free.querySelectorAll("input")) chosenFree[input.name] = typed(input.value) ?? fail(`'${input.value}' is not a number.`);
@@ -609,7 +676,7 @@
       }
       if (writes) fields.option.value = typeof call.value === "bigint" && labelIn(listOf(about), call.value) !== undefined ? String(call.value) : "";
       show(...(telegram ? picture(chosenService, telegram, call) : []), messages(wrong));
-    }
+    });
 
     function remarks(place, sub, call, writes) {
       const found = [];
@@ -626,7 +693,7 @@
       const text = hex(telegram.bytes);
       const identifier = chosenService.request.identifier;
       const node = fields.node ? typed(fields.node.value) : null;
-      const base = identifier ? BigInt(data.identifiers[identifier]) : null;
+      const base = identifier ? BigInt(connectionNamed(identifier).base) : null;
       const number = base === null ? null : node === null ? `${inHex(base, 3)} + node address` : inHex(base + node, 3);
       return [
         facts([number === null ? null : ["Identifier", make("code", { class: "identifier" }, number)], ["Bytes", make("code", { class: "telegram-bytes" }, text), copier(text, "bytes")]]),
@@ -639,7 +706,7 @@
       const known = about.type !== undefined;
       const sub = typed(fields.sub.value);
       const place = target();
-      const code = place?.known?.key ?? fields.code.value.trim();
+      const code = place?.known?.key ?? place?.said.replace(/^index /, "") ?? fields.code.value.trim();
       remember({
         service: fields.service.value,
         code: `${code.split("/")[0]}${sub ? `/${sub}` : ""}`,
@@ -662,7 +729,8 @@
     changeFacts();
     if (state.has("type") && about.type === undefined) fields.type.value = state.get("type");
     if (state.has("scaling") && about.type === undefined) fields.scaling.value = state.get("scaling");
-    if (state.has("raw")) fields.value.value = unscaled(BigInt(state.get("raw")), BigInt(about.scaling ?? 1));
+    const raws = typed(state.get("raw") ?? "");
+    if (raws !== null) fields.value.value = unscaled(raws, BigInt(about.scaling ?? 1));
     if (state.has("value")) fields.value.value = state.get("value");
     changeService();
     for (const input of free.querySelectorAll("input")) input.value = state.get(input.name) ?? input.value;
@@ -681,20 +749,33 @@
     return { identifier: logged ? BigInt(`0x${logged[1]}`) : null, bytes: pairs.map((pair) => (/[x?]/i.test(pair) ? null : parseInt(pair, 16))) };
   }
 
+  // What an identifier is in the predefined connection set, with the node; null where it is nothing there.
+  function connectionOf(identifier) {
+    for (const connection of data.connections) {
+      const node = identifier - BigInt(connection.base);
+      if (connection.broadcast ? node === 0n : isNode(node)) return { ...connection, node: connection.broadcast ? null : node };
+    }
+    return null;
+  }
+
+  const connectionNamed = (name) => data.connections.find((it) => it.name === name);
+  const isNode = (number) => number !== null && BigInt(data.nodes[0]) <= number && number <= BigInt(data.nodes[1]);
+
   // Every message of a service that the bytes may be, the one with the data type of the parameter first.
-  function matches(name, bytes, identifier) {
+  // name: the layout; connection: what the identifier is, null without; strict: messages of other identifiers do not count.
+  function matches(name, bytes, connection, strict) {
     const found = [];
     for (const service of data.services) {
       for (const role of ["request", "answer"]) {
         const message = service[role];
         if (!message) continue;
-        const node = message.identifier === null || identifier === null ? null : identifier - BigInt(data.identifiers[message.identifier]);
-        const reached = message.identifier === null || identifier === null || (node >= 1n && node <= 127n);
+        const reached = message.identifier === null || connection === null || message.identifier === connection.name;
+        if (strict && !reached) continue;
         for (const type of Object.keys(data.types)) {
           const call = possible(service, message, name, bytes, type);
           if (!call) continue;
           call.kind = service.errors;
-          found.push({ service, message, role, call, node: reached ? node : null, rank: (reached ? 4 : 0) + (role === "request" ? 1 : 0) + likelihood(call) });
+          found.push({ service, message, role, call, rank: (reached ? 4 : 0) + (role === "request" ? 1 : 0) + likelihood(call) });
         }
       }
     }
@@ -722,7 +803,7 @@
   }
 
   // How well bytes fit a layout: what a service would send counts most, then constants and values with a meaning.
-  function fits(name, bytes, identifier) {
+  function fits(name, bytes, connection, strict) {
     const layout = data.layouts[name];
     let spans;
     try {
@@ -731,13 +812,15 @@
       if (error instanceof Misfit) return { name, error: error.message };
       throw error;
     }
-    const match = matches(name, bytes, identifier)[0] ?? null;
+    const match = matches(name, bytes, connection, strict)[0] ?? null;
     let rank = match ? 100 + 10 * match.rank : 0;
     for (const { field, values } of spans) {
       const value = values[field.name];
       if (field.constant) rank += 1;
       if (field.length === null && !field.sizes) rank -= 2;
-      if (field.values && typeof value === "bigint") rank += labelIn(field.values, value) === undefined ? -1 : 3;
+      if (typeof value !== "bigint") continue;
+      if (field.values) rank += labelIn(field.values, value) === undefined ? -1 : 3;
+      else for (const [part, list] of Object.entries(field.parts ?? {})) rank += labelIn(list, values[`${field.name}.${part}`]) === undefined ? -1 : 3;
     }
     return { name, spans, match, rank };
   }
@@ -745,58 +828,89 @@
   function startDecoder() {
     const it = instrument("decoder");
     if (!it) return;
-    const { form, fields, idle, show } = it;
+    const { form, fields, idle, show, guarded } = it;
     const state = asked();
     fields.bytes.value = state.get("bytes") ?? "";
     if (fields.id) fields.id.value = state.get("id") ?? "";
     fields.layout.value = state.get("layout") ?? "";
     if (fields.layout.selectedIndex < 0) fields.layout.value = "";
 
-    function update() {
+    const update = guarded(() => {
       if (!fields.bytes.value.trim()) return show(...idle);
       const found = pasted(fields.bytes.value);
-      if (!found || !found.bytes.length) return show(messages(["These are not bytes in hexadecimal: two digits each."]));
+      if (!found || (!found.bytes.length && found.identifier === null)) return show(messages(["These are not bytes in hexadecimal: two digits each."]));
       const text = fields.id?.value.trim().replace(/^0x|h$/gi, "") ?? "";
       if (text && !/^[0-9a-f]+$/i.test(text)) return show(messages([`'${fields.id.value}' is not a hexadecimal identifier.`]));
-      const identifier = text ? BigInt(`0x${text}`) : found.identifier;
-      const names = fields.layout.value ? [fields.layout.value] : Object.keys(data.layouts);
-      const all = names.map((name) => fits(name, found.bytes, identifier));
+      // Buses without identifiers have none to go by.
+      const given = text ? BigInt(`0x${text}`) : found.identifier;
+      const identifier = data.connections.length ? given : null;
+      const connection = identifier === null ? null : connectionOf(identifier);
+      const forced = fields.layout.value;
+      const names = forced ? [forced] : layoutsFor(identifier, connection);
+      const all = names.map((name) => fits(name, found.bytes, connection, !forced));
       const good = all.filter((one) => !one.error).sort((a, b) => b.rank - a.rank);
-      if (!good.length) return show(messages(fields.layout.value ? all.map((one) => `Does not fit the layout: ${one.error}`) : [`No telegram of this device has ${found.bytes.length} bytes like these.`]));
-      show(...picture(good[0], found.bytes, identifier), others(good.slice(1)));
+      if (good.length) return show(...picture(good[0], found.bytes, identifier, connection), others(good.slice(1)));
+      if (forced) return show(messages(all.map((one) => `Does not fit the layout: ${one.error}`)));
+      if (connection) return show(...unread(found.bytes, identifier, connection));
+      show(messages([...strange(identifier, connection), `No telegram of this device has ${found.bytes.length} bytes like these.`]));
+    });
+
+    // The identifier decides which telegrams there can be; values of objects are none.
+    function layoutsFor(identifier, connection) {
+      if (identifier === null) return Object.keys(data.layouts);
+      return connection?.layouts ?? [...new Set(data.connections.flatMap((it) => it.layouts))];
     }
 
-    function picture({ name, spans, match }, bytes, identifier) {
+    const strange = (identifier, connection) => (identifier !== null && !connection ? [`The identifier ${inHex(identifier, 3)} is not in the predefined connection set.`] : []);
+
+    // What the identifier alone says.
+    const identified = (identifier, connection) => (connection ? [
+      ["Identifier", `${inHex(identifier, 3)} = ${connection.name}: ${connection.title}`],
+      connection.node === null ? null : ["Node address", String(connection.node)],
+    ] : []);
+
+    // A telegram of which nothing but the identifier is known.
+    function unread(bytes, identifier, connection) {
+      return [
+        make("p", { class: "found" }, connection.name),
+        facts(identified(identifier, connection)),
+        bytes.length ? make("ol", { class: "bytes" }, make("li", {}, make("code", {}, hex(bytes)), " ", make("b", {}, connection.title))) : null,
+        messages(connection.layouts.length ? [`No telegram of ${connection.name} has ${bytes.length} bytes like these.`] : []),
+      ];
+    }
+
+    function picture({ name, spans, match }, bytes, identifier, connection) {
       const layout = data.layouts[name];
       const call = match?.call ?? null;
       const parameter = call && (call.index !== null || call.code !== null) ? parameterOf(call) : null;
       const about = { type: call?.type, ...(parameter ? factsOf(parameter, call.sub ?? 0n) : {}) };
       const error = call?.error != null ? errorOf(call) : null;
       const title = match ? [link(match.service.href, match.service.name), match.role === "request" ? ", request" : match.service.request ? ", answer" : ""] : [link(layout.href, layout.name)];
-      const wrong = [...contradictions(match, about, identifier)];
       return [
         make("p", { class: "found" }, ...title),
         facts([
-          match?.node != null ? ["Node address", String(match.node)] : null,
+          ...identified(identifier, connection),
           call && (call.index !== null || call.code !== null) ? ["Parameter", ...parameterLink(call)] : null,
           call && call.value !== null ? ["Value", worded(call.value, about)] : null,
-          call?.error != null ? ["Error", ...(error ? [link(error[4], inHex(call.error, 4)), ` ${error[3]}`] : [`${inHex(call.error, 4)}, not in this manual`])] : null,
+          call?.error != null ? ["Error", ...(error ? [link(error[4], errorText(call.kind, call.error)), ` ${error[3]}`] : [`${errorText(call.kind, call.error)}, not in this manual`])] : null,
           ["Layout", link(layout.href, name)],
         ]),
         strip(spans, bytes, match, about),
-        messages(wrong),
+        ...errorsIn(spans),
+        messages([...strange(identifier, connection), ...contradictions(name, match, about, identifier, connection)]),
       ];
     }
 
-    function* contradictions(match, about, identifier) {
+    function* contradictions(name, match, about, identifier, connection) {
       if (!match) {
-        const services = data.services.filter((service) => [service.request, service.answer].some((message) => message && layouts(message).includes(fields.layout.value)));
-        if (services.length) yield "No service of this device sends just these bytes; look at the fields.";
+        if (connection && !connection.layouts.includes(name)) yield `The identifier ${inHex(identifier, 3)} is that of ${connection.name}, which has no telegrams of this layout.`;
+        const sent = data.services.some((service) => [service.request, service.answer].some((message) => message && layouts(message).includes(name)));
+        if (sent && (connection || fields.layout.value)) yield "No service of this device sends just these bytes; look at the fields.";
         return;
       }
       const { call, service, role, message } = match;
-      if (identifier !== null && message.identifier !== null && match.node === null) {
-        yield `The identifier ${inHex(identifier, 3)} is not one of ${message.identifier} (${inHex(BigInt(data.identifiers[message.identifier]), 3)} + node address).`;
+      if (connection && message.identifier !== null && message.identifier !== connection.name) {
+        yield `The identifier ${inHex(identifier, 3)} is not one of ${message.identifier} (${inHex(BigInt(connectionNamed(message.identifier).base), 3)} + node address).`;
       }
       if (call.value !== null && about.key && call.type !== about.type) {
         yield `${about.key} is ${about.spelled ?? about.type}; the telegram carries a value like ${call.type}.`;
@@ -838,15 +952,16 @@
   function startErrors() {
     const it = instrument("number");
     if (!it) return;
-    const { form, fields, idle, show } = it;
-    const masked = (kind, value) => (kind === "device" && data.mask !== undefined ? value & BigInt(data.mask) : value);
-    const found = (value) => data.errors.filter(([kind, first, last]) => value >= 0n && BigInt(first) <= masked(kind, value) && masked(kind, value) <= BigInt(last));
+    const { form, fields, idle, show, guarded } = it;
+    const found = (value) => data.errors.filter((entry) => holds(entry, value));
+    const longest = Math.max(...Object.values(data.digits));
 
-    function update() {
+    const update = guarded(() => {
       const text = fields.number.value.trim();
       if (!text) return show(...idle);
       const value = typed(text);
       if (value === null || value < 0n) return show(messages([`'${text}' is not a number.`]));
+      if (value >> BigInt(4 * longest)) return show(messages([`'${text}' is too long: error numbers have at most ${longest} hexadecimal digits.`]));
       const entries = found(value);
       const otherwise = /^\d+$/.test(text) && BigInt(`0x${text}`) !== value ? BigInt(`0x${text}`) : null;
       const second = otherwise !== null && !entries.length ? found(otherwise) : [];
@@ -854,35 +969,11 @@
       const shown = second.length ? second : entries;
       show(
         make("p", { class: "found" }, make("code", {}, inHex(meant, meant > 0xffffn ? 8 : 4)), ` = ${meant}`, second.length ? ", read as hexadecimal" : ""),
-        data.fields && (!shown.length || shown.some(([kind]) => kind === "device")) ? parts(meant) : null,
-        ...shown.map((entry) => card(entry, meant)),
+        data.fields && (!shown.length || shown.some(([kind]) => kind === "device")) ? errorParts(meant) : null,
+        ...shown.map((entry) => errorCard(entry, meant)),
         shown.length ? null : messages(["No error of this manual has this number."]),
       );
-    }
-
-    const parts = (value) => facts(data.fields.map(([name, low, high]) => {
-      const part = slice(value, low, high);
-      const label = data.values[name]?.[part];
-      return [name[0].toUpperCase() + name.slice(1), `${part}${part > 9n ? ` = ${inHex(part)}` : ""}${label ? `: ${label}` : ""}`];
-    }));
-
-    function card([kind, first, last, name, href, more], value) {
-      const own = masked(kind, value);
-      const place = Number(own - BigInt(first));
-      const digits = data.digits[kind];
-      const anchor = more.each && place ? `${href.split("#")[0]}#${more.each}${own.toString(16).padStart(digits, "0")}` : href;
-      const code = more.codes?.length === last - first + 1 ? more.codes[place] : null;
-      const codes = code ? [code] : more.codes ?? [];
-      return make("div", { class: "card" },
-        make("p", {}, link(anchor, `0x${own.toString(16).padStart(digits, "0")}`), ` ${name}`),
-        facts([
-          ["List", data.kinds[kind]],
-          more.slot ? ["Slot", more.slot] : null,
-          last > first ? ["In the run", `${place + 1} of ${last - first + 1}`] : null,
-          more.response ? ["Preset response", more.response] : null,
-          codes.length ? ["Response set in", ...codes.flatMap(([text, target], nth) => [nth ? ", " : "", link(target, text)])] : null,
-        ]));
-    }
+    });
 
     fields.number.value = asked().get("number") ?? "";
     form.addEventListener("input", () => {
@@ -897,7 +988,7 @@
   function startConverter() {
     const it = instrument("converter");
     if (!it) return;
-    const { form, fields, idle, show } = it;
+    const { form, fields, idle, show, guarded } = it;
     const base = BigInt(data.base);
     const ranges = idle.slice(1);
     const split = (text) => {
@@ -908,20 +999,37 @@
     const joined = (text, part) => (part === null ? text : `${text}/${part}`);
     // The code that each control names; undefined where it is none.
     const readers = {
-      code: (text) => (/^c?0*\d{1,6}$/i.test(text) ? BigInt(text.replace(/^c/i, "")) : undefined),
+      code: (text) => (/^c?0*\d{1,6}$/i.test(text) ? BigInt(text.replace(/^c/i, "")) : indexesIn(text).map((index) => base - index)[0]),
       index: (text) => (/^\d+$/.test(text) ? base - BigInt(text) : undefined),
       hex: (text) => (/^(?:i-|0x)?[0-9a-f]+h?$/i.test(text) ? base - BigInt(`0x${text.replace(/^(?:i-|0x)|h$/gi, "")}`) : undefined),
     };
+
+    const indexesIn = (text) => readings(text.toLowerCase()).filter((it) => it.spaces.includes("i") && Number.isSafeInteger(it.number)).map((it) => BigInt(it.number));
+    const codesIn = (text) => readings(text.toLowerCase()).filter((it) => it.spaces.includes("c") && Number.isSafeInteger(it.number)).map((it) => BigInt(it.number));
+
+    // Codes and objects of this manual that a text means in other notations than that of its control.
+    function alternatives(text) {
+      const indexes = [...codesIn(text).map((code) => base - code), ...indexesIn(text)];
+      const found = new Map(indexes.map((index) => [index, entryAt(index)]).filter(([, entry]) => entry));
+      return found.size ? [["Could also be", ...[...found.values()].flatMap(([key, href, name], nth) => [nth ? ", " : "", link(href, key), ` ${name}`])]] : [];
+    }
+
+    // Designation, address and name of the code or object with an index.
+    function entryAt(index) {
+      const code = data.codes[base - index];
+      return data.objects[index] ?? (code ? [designation(base - index), code[1], code[0]] : null);
+    }
 
     function convert(name, text) {
       const parts = split(text);
       const code = parts ? readers[name](parts[0]) : undefined;
       if (code === undefined || code < 0n || code > base) return null;
       const index = base - code;
-      return { code, part: parts[1], texts: { code: joined(designation(code), parts[1]), index: joined(String(index), parts[1]), hex: joined(inHex(index, 4), parts[1]) } };
+      const object = data.objects[index];
+      return { code, part: parts[1], object, texts: { code: object ? "" : joined(designation(code), parts[1]), index: joined(String(index), parts[1]), hex: joined(inHex(index, 4), parts[1]) } };
     }
 
-    function update(name) {
+    const update = guarded((name) => {
       const text = fields[name].value;
       if (!text.trim()) {
         for (const other of Object.keys(readers)) fields[other].value = "";
@@ -929,7 +1037,7 @@
       }
       const found = convert(name, text);
       for (const other of Object.keys(readers)) if (other !== name) fields[other].value = found ? found.texts[other] : "";
-      if (!found) return show(messages([`'${text.trim()}' is no ${name === "code" ? "code" : "index of a code"}: codes go from 0 to ${base}.`]), ...ranges);
+      if (!found) return show(facts(alternatives(text)), messages([`'${text.trim()}' is no ${name === "code" ? "code" : "index of a code"}: codes go from 0 to ${base}.`]), ...ranges);
       const known = data.codes[found.code];
       const slot = slotOf(found.code);
       const twin = slot && data.slots.find((other) => other !== slot);
@@ -937,7 +1045,10 @@
       const wrong = known && found.part !== null && found.part > BigInt(known[2]) ? [`${designation(found.code)} has ${known[2] || "no"} subcodes.`] : [];
       show(
         facts([
-          ["Code", link(known?.[1], found.texts.code), known ? ` ${known[0]}` : ", not in this manual"],
+          found.object
+            ? ["Object", link(found.object[1], joined(found.object[0], found.part)), ` ${found.object[2]}`]
+            : ["Code", link(known?.[1], found.texts.code), known ? ` ${known[0]}` : ", not in this manual"],
+          ...(known || found.object ? [] : alternatives(text)),
           ["Index", `${found.texts.index} = ${found.texts.hex}`],
           slot ? ["Slot", slot[0]] : null,
           twin ? [`The same in ${twin[0]}`, link(data.codes[twinCode]?.[1], joined(designation(twinCode), found.part)), `, index ${base - twinCode} = ${inHex(base - twinCode, 4)}`] : null,
@@ -945,7 +1056,7 @@
         messages(wrong),
         ...(slot ? [] : ranges),
       );
-    }
+    });
 
     const slotOf = (code) => data.slots.find(([, first, last]) => BigInt(first) <= code && code <= BigInt(last));
 
@@ -954,13 +1065,18 @@
     fields.code.value = state.get("convert") ?? "";
     form.addEventListener("input", (event) => {
       update(event.target.name);
-      remember({ convert: fields.code.value.trim() });
+      const shown = convert(event.target.name, event.target.value);
+      remember({ convert: shown?.object ? joined(shown.object[0], shown.part) : fields.code.value.trim() });
     });
     update("code");
   }
 
-  startBuilder();
-  startDecoder();
-  startErrors();
-  startConverter();
+  // One that fails to begin does not keep the others from it.
+  for (const start of [startBuilder, startDecoder, startErrors, startConverter]) {
+    try {
+      start();
+    } catch (error) {
+      reportError(error);
+    }
+  }
 })();

@@ -1341,6 +1341,13 @@ SELECTIONS: dict[str, tuple[object, ...]] = {
             (3, "WRITE_RESPONSE", "Write response"), (4, "ERROR_RESPONSE", "Error response"),
         ),
     ),
+    "HeartbeatState": (
+        "N: state (Heartbeat telegram). KHB-13.0002-EN-4.1-azmanual, 5.7.1 p. 47.",
+        (
+            (0, "BOOT_UP", "Boot-up"), (4, "STOPPED", "Stopped"), (5, "OPERATIONAL", "Operational"),
+            (127, "PRE_OPERATIONAL", "Pre-operational"),
+        ),
+    ),
 }
 
 FLAGS: dict[str, tuple[object, ...]] = {

@@ -491,7 +491,8 @@ class Heartbeat(base.Telegram):
     state: int
     """N.
 
-    NMT state of the drive; its values are lost.
+    NMT state of the drive; its values are lost, those of CiA 301 stand here.
+    Its values are listed in HeartbeatState.
     """
 
     def __init__(

@@ -179,7 +179,7 @@ __all__: tuple[str, ...] = (
     "I1001ErrorRegisterFlags", "I1400Sub1CobIdUsedByPdoFlags", "I1401Sub1CobIdUsedByPdoFlags",
     "I1800Sub1CobIdUsedByPdoFlags", "I1801Sub1CobIdUsedByPdoFlags", "I6040ControlWordFlags",
     "I6041StatusWordFlags", "I6060ModesOfOperation", "I6061ModesOfOperationDisplay", "I607ePolarityFlags",
-    "SdoCommand", "SdoCommandLength", "SdoCommandCs",
+    "SdoCommand", "SdoCommandLength", "SdoCommandCs", "HeartbeatState",
 )
 
 _TELEGRAMS = (

@@ -71,7 +71,7 @@ __all__: tuple[str, ...] = (
     "I1001ErrorRegisterFlags", "I1400Sub1CobIdUsedByPdoFlags", "I1401Sub1CobIdUsedByPdoFlags",
     "I1800Sub1CobIdUsedByPdoFlags", "I1801Sub1CobIdUsedByPdoFlags", "I6040ControlWordFlags",
     "I6041StatusWordFlags", "I6060ModesOfOperation", "I6061ModesOfOperationDisplay", "I607ePolarityFlags",
-    "SdoCommand", "SdoCommandLength", "SdoCommandCs",
+    "SdoCommand", "SdoCommandLength", "SdoCommandCs", "HeartbeatState",
 )
 
 DEVICE: Final[Device]
@@ -1217,4 +1217,12 @@ class SdoCommandCs(Selection):
     READ_REQUEST_OR_READ_RESPONSE = 2  # Read request or read response
     WRITE_RESPONSE = 3  # Write response
     ERROR_RESPONSE = 4  # Error response
+
+class HeartbeatState(Selection):
+    """N: state (Heartbeat telegram). KHB-13.0002-EN-4.1-azmanual, 5.7.1 p. 47."""
+
+    BOOT_UP = 0  # Boot-up
+    STOPPED = 4  # Stopped
+    OPERATIONAL = 5  # Operational
+    PRE_OPERATIONAL = 127  # Pre-operational
 

@@ -125,17 +125,20 @@ def _telegrams(model: Model, links: Links) -> Instruments:
     device = links.device
     bus = Bus(model, device)
     lists = _Lists()
-    names = sorted({m.identifier for s in device.services for m in s.messages if m.identifier})
-    data = {
+    nodes = any(message.identifier for service in device.services for message in service.messages)
+    kinds = {service.errors for service in device.services}
+    kinds |= {kind for layout in device.layouts for kind in _error_kinds(layout.fields)}
+    data = _error_data(links) | {
         "layouts": {layout.id: _layout(links, layout) for layout in device.layouts},
         "services": [_service(links, service) for service in device.services],
-        "identifiers": {name: bus.bases[name] for name in names},
+        "connections": list(_connections(model, device)) if nodes else [],
+        "nodes": [model.node_addresses.start, model.node_addresses.stop - 1],
         "node": bus.node,
         "types": {kind.canopen_name: [kind.bits, int(kind.signed)] for kind in DataType},
         "base": device.drive.index_base if device.drive else None,
         "parameters": [*_codes(links, lists), *_objects(links, lists)],
         "lists": lists.found,
-        "errors": list(_errors(links, {service.errors for service in device.services})),
+        "errors": list(_errors(links, kinds)),
     }
     asked = [service for service in device.services if service.request is not None]
     return Instruments(
@@ -145,9 +148,31 @@ def _telegrams(model: Model, links: Links) -> Instruments:
         layouts=tuple(Choice(layout.id, layout.name) for layout in device.layouts),
         types=tuple(Choice(kind.canopen_name, kind.canopen_name) for kind in DataType if kind is not DataType.DOMAIN),
         first=_first(bus, asked[0]) if asked else None,
-        nodes=bool(names),
+        nodes=nodes,
         log=next(_log_lines(device), ""),
     )
+
+
+def _error_kinds(fields: Sequence[Field]) -> Iterator[str]:
+    """Kinds of the error numbers that fields hold."""
+    for field in fields:
+        if field.errors:
+            yield field.errors
+        yield from _error_kinds(field.fields)
+
+
+def _connections(model: Model, device: Device) -> Iterator[_Json]:
+    """The predefined connection set, with the layouts of the telegrams that each identifier has."""
+    named = [(message.identifier, layout_names(message)) for service in device.services for message in service.messages]
+    for entry in model.cob_ids:
+        sent = {layout for identifier, layouts in named if identifier == entry.name for layout in layouts}
+        yield {
+            "name": entry.name,
+            "title": entry.title,
+            "base": entry.base,
+            "broadcast": entry.broadcast,
+            "layouts": [one.id for one in device.layouts if one.id in sent or entry.name in one.identifiers],
+        }
 
 
 def _log_lines(device: Device) -> Iterator[str]:
@@ -234,6 +259,7 @@ def _field(field: Field) -> _Json:
             "values": _options(field.values),
             "bits": [[part.low, part.high, part.label] for part in field.bits],
             "parts": {name: _options(options) for name, options in field.bit_values},
+            "errors": field.errors,
         }
     )
 
@@ -425,6 +451,9 @@ def _converter(links: Links, drive: Drive) -> Instruments:
         "slots": [[slot.name, slot.first_code, slot.last_code, slot.code_offset] for slot in device.slots],
         "codes": {
             code.number: [code.name, links.href(code_id(code.number)), code.highest_subcode] for code in device.codes
+        },
+        "objects": {
+            entry.index: [entry.designation, links.href(object_id(entry)), entry.name] for entry in device.objects
         },
     }
     return Instruments(

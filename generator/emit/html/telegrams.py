@@ -58,11 +58,18 @@ def layout_entry(links: Links, layout: Layout) -> Entry:
         name=layout.name,
         marks=(origin,) if origin else (),
         lead=links.prose(layout.description),
-        facts=(Fact("Protocol", layout.protocol), Fact("Source", links.source(layout.cite))),
+        facts=tuple(_layout_facts(links, layout)),
         tables=(Table("fields", _FIELDS, tuple(_field_rows(links, layout, layout.fields, ""))),),
         related=(Fact("Worked examples", joined(examples)),) if examples else (),
         notes=notes(links, [named_subject(layout.errata)]),
     )
+
+
+def _layout_facts(links: Links, layout: Layout) -> Iterator[Fact]:
+    yield Fact("Protocol", layout.protocol)
+    if layout.identifiers:
+        yield Fact("Identifier of", ", ".join(layout.identifiers))
+    yield Fact("Source", links.source(layout.cite))
 
 
 def _field_rows(links: Links, layout: Layout, fields: Sequence[Field], path: str) -> Iterator[Row]:

@@ -2,7 +2,6 @@
 
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
-from itertools import pairwise
 
 from generator.emit.html.drive import command_text
 from generator.emit.html.errors import has_own_places, shared_name
@@ -24,7 +23,6 @@ from generator.emit.html.places import (
 from generator.emit.html.text import ELLIPSIS, hexadecimal
 from generator.model import (
     BitField,
-    CobId,
     Code,
     CodeRef,
     DictionaryObject,
@@ -159,7 +157,7 @@ def things(model: Model, links: Links) -> Iterator[Thing]:
     for errors in error_entries(device, device.errors):
         yield _error(links, errors)
     if any(entry.kind == "canopen" for entry in device.objects):
-        yield from _cob_ids(links, model.cob_ids)
+        yield from _cob_ids(links, model)
     for table in device.indicators:
         yield from _led_rows(links, table)
     yield from _commands(links)
@@ -228,13 +226,11 @@ def _error_spot(links: Links, kind: str, number: int, key: Key) -> Spot:
     return Spot(text, links.href(error_id(kind, number)), (key,), (also,))
 
 
-def _cob_ids(links: Links, entries: Sequence[CobId]) -> Iterator[Thing]:
+def _cob_ids(links: Links, model: Model) -> Iterator[Thing]:
     """Identifiers of the predefined connection set, each where the object that holds it, or a table, describes it."""
-    bases = sorted({entry.base for entry in entries})
-    room = min((after - before for before, after in pairwise(bases)), default=1)
     known = {entry.index: entry for entry in links.device.objects}
     table = next((table for table in links.device.tables if table.kind == "cob-id"), None)
-    for entry in entries:
+    for entry in model.cob_ids:
         held_in = [ref for ref in entry.objects if ref.index in known]
         if held_in:
             href = links.object(held_in[0]).href
@@ -242,9 +238,10 @@ def _cob_ids(links: Links, entries: Sequence[CobId]) -> Iterator[Thing]:
             href = links.href(named_id("table", table.id) if table else "device")
         text = hexadecimal(entry.base, _COB_ID_BITS)
         keys = [Key("b", entry.base)]
-        if not entry.broadcast:
+        if not entry.broadcast and model.node_addresses:
             text += " + node"
-            keys.append(Key("b", entry.base + 1, last=entry.base + room - 1, node=1))
+            nodes = model.node_addresses
+            keys.append(Key("b", entry.base + nodes[0], last=entry.base + nodes[-1], node=nodes[0]))
         words = f"COB-ID identifier {' '.join(links.object(ref).text for ref in held_in)}"
         yield Thing("cob_id", entry.name, words, (Spot(text, href, tuple(keys), (str(entry.base),)),))
 

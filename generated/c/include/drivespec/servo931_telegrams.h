@@ -663,6 +663,13 @@ static inline drivespec_status servo931_emergency_encode(const servo931_emergenc
  * @{
  */
 #define SERVO931_HEARTBEAT_SIZE 1u ///< bytes
+/** Values of N */
+typedef enum servo931_heartbeat_state {
+    SERVO931_HEARTBEAT_STATE_BOOT_UP = 0, ///< Boot-up
+    SERVO931_HEARTBEAT_STATE_STOPPED = 4, ///< Stopped
+    SERVO931_HEARTBEAT_STATE_OPERATIONAL = 5, ///< Operational
+    SERVO931_HEARTBEAT_STATE_PRE_OPERATIONAL = 127 ///< Pre-operational
+} servo931_heartbeat_state;
 /** @} */
 
 /**
@@ -671,7 +678,7 @@ static inline drivespec_status servo931_emergency_encode(const servo931_emergenc
  * heartbeat. KHB-13.0002-EN-4.1-azmanual, 5.7.1 p. 47 (from another public document).
  */
 typedef struct servo931_heartbeat_t {
-    uint8_t state; ///< N. NMT state of the drive; its values are lost.
+    uint8_t state; ///< N. NMT state of the drive; its values are lost, those of CiA 301 stand here.
 } servo931_heartbeat_t;
 
 /** Read the fields from the front of @p rest; part of the decoder. */

@@ -565,7 +565,7 @@ impl Emergency {
 pub struct Heartbeat {
     /// N.
     ///
-    /// NMT state of the drive; its values are lost.
+    /// NMT state of the drive; its values are lost, those of CiA 301 stand here.
     pub state: u8,
 }
 
@@ -587,6 +587,18 @@ impl<'a> Layout<'a> for Heartbeat {
 impl Heartbeat {
     /// Length in bytes.
     pub const ENCODED_SIZE: usize = 1;
+
+    /// Value of `state`: Boot-up.
+    pub const STATE_BOOT_UP: u8 = 0x00;
+
+    /// Value of `state`: Stopped.
+    pub const STATE_STOPPED: u8 = 0x04;
+
+    /// Value of `state`: Operational.
+    pub const STATE_OPERATIONAL: u8 = 0x05;
+
+    /// Value of `state`: Pre-operational.
+    pub const STATE_PRE_OPERATIONAL: u8 = 0x7F;
 
     /// The values of a telegram.
     ///
