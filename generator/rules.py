@@ -29,7 +29,7 @@ RULES: dict[str, str] = {
     "slot-run": "The codes of a slot lie in the run of that slot.",
     "shared-unknown": "A code marked as shared stands in the codes.yaml of the drive.",
     "shared-same": "A shared code repeats no fact of the drive's codes.yaml.",
-    "run-order": "Runs ascend and do not overlap.",
+    "run-order": "Runs ascend, do not overlap and end where what they count ends.",
     "list-length": "A list over a run of objects has one item for each object.",
     "key-absent": "A code that is not shared has a name, a data type, access boxes and what else its entry needs.",
     "standard-unknown": "An object outside the standard says its object type.",

@@ -172,6 +172,17 @@ def formulas(model: Model, device: Device) -> Iterator[Finding]:
                     where=example.where,
                 )
                 continue
+            except ZeroDivisionError:
+                yield Finding(
+                    rule="formula-example",
+                    subject=f"formula:{formula.id}",
+                    place="values",
+                    printed=example.result,
+                    expected="none",
+                    message=f"{formula.expression} divides by 0",
+                    where=example.where,
+                )
+                continue
             if result != example.result:
                 yield Finding(
                     rule="formula-example",
@@ -210,7 +221,7 @@ def switches(model: Model, device: Device) -> Iterator[Finding]:
         for row in group.rows:
             if (
                 group.weights
-                and row.value.isdigit()
+                and row.value.isdecimal()
                 and "x" not in row.positions
                 and group.sum(row.positions) != int(row.value)
             ):

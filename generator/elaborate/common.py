@@ -4,7 +4,7 @@ import re
 from collections.abc import Iterator, Mapping
 
 from generator.diagnostics import suggestion
-from generator.model import Bit, BitField, DataType, Default, Manual, Option, Origin
+from generator.model import Bit, BitField, DataType, Default, Manual, Option, Origin, Where
 from generator.notation import node_relative
 from generator.tree import Node
 
@@ -36,6 +36,9 @@ OBJECT_TYPES = {
     "DOMAIN": DataType.DOMAIN,
 }
 """Data types of objects as the manuals abbreviate them."""
+
+HIGHEST_BIT = 63
+"""Last bit that a number can have."""
 
 _PLACEHOLDER = re.compile(r"\{([a-z]+)(\+1)?\}")
 _BRACES = re.compile(r"\{[^}]*\}?|\}")
@@ -84,13 +87,35 @@ def origin(node: Node) -> Origin:
     return Origin(node.get("origin", "manual"))
 
 
-def runs(node: Node) -> Iterator[tuple[str, int, int]]:
-    """Keys of a mapping that are numbers or runs ("1...8"), each with first and last; order is checked."""
+def bounds(run: str) -> tuple[int, int]:
+    """First and last of a number or a run ("1...8")."""
+    first, _, last = run.partition("...")
+    return int(first), int(last or first)
+
+
+def is_within(run: str, highest: int, node: Node, where: Where) -> bool:
+    """Whether a run ascends and ends at ``highest``; noted at ``where`` if not."""
+    low, high = bounds(run)
+    if low <= high <= highest:
+        return True
+    node.problems.add(
+        "run-order",
+        where,
+        f"'{run}' does not ascend" if high < low else f"'{run}' is longer than what it counts",
+        compared=[("last possible number", highest)],
+        hint="write the lower number first" if high < low else "end the run at a number that can exist",
+    )
+    return False
+
+
+def runs(node: Node, highest: int) -> Iterator[tuple[str, int, int]]:
+    """Keys of a mapping that are numbers or runs ("1...8"), each with first and last; order and limit are checked."""
     previous = -1
     for key in node.data:
-        first, _, last = key.partition("...")
-        low, high = int(first), int(last or first)
-        if low <= previous or high < low:
+        if not is_within(key, highest, node, node.at_key(key)):
+            continue
+        low, high = bounds(key)
+        if low <= previous:
             node.problems.add(
                 "run-order",
                 node.at_key(key),
@@ -117,7 +142,7 @@ def bits(node: Node, key: str = "bits") -> tuple[Bit, ...]:
         return ()
     return tuple(
         Bit(number, fill(str(child.data[run]), child, run, {"n": number, "i": number - low + 1}))
-        for run, low, high in runs(child)
+        for run, low, high in runs(child, HIGHEST_BIT)
         for number in range(low, high + 1)
     )
 
@@ -127,7 +152,7 @@ def fields(node: Node, key: str = "fields") -> tuple[BitField, ...]:
     child = node.child(key)
     if child is None:
         return ()
-    return tuple(BitField(low, high, str(child.data[run])) for run, low, high in runs(child))
+    return tuple(BitField(low, high, str(child.data[run])) for run, low, high in runs(child, HIGHEST_BIT))
 
 
 def default(node: Node, key: str, value: object, is_number: bool) -> Default | None:

@@ -10,6 +10,8 @@ from generator.model import Cite, CodeRef, Drive, ErrorEntry, ErrorRef, PrintedN
 from generator.notation import numbers, references
 from generator.tree import Node
 
+_LONGEST_RUN = 0x10000
+
 
 @dataclass(frozen=True, slots=True)
 class Frame:
@@ -78,7 +80,17 @@ def number(node: Node) -> tuple[int, int]:
         node.problems.add(
             "run-order", node.at("number"), "the run does not ascend", hint="write the lower number first"
         )
-    return run.first, last
+    elif last - run.first >= _LONGEST_RUN:
+        node.problems.add(
+            "run-order",
+            node.at("number"),
+            f"the run has {last - run.first + 1} numbers",
+            compared=[("at most", _LONGEST_RUN)],
+            hint="describe what is printed; a run stands for numbers that can occur",
+        )
+    else:
+        return run.first, last
+    return 0, 0
 
 
 def _entry(node: Node, slot: Slot | None, first: int, last: int, printed: Node | None, frame: Frame) -> ErrorEntry:

@@ -4,8 +4,8 @@ from collections.abc import Mapping
 
 from generator.diagnostics import suggestion
 from generator.elaborate.codes import ErrataIndex
-from generator.elaborate.common import options, origin, runs, unique
-from generator.model import BitField, Example, Field, FieldType, Layout, Option, Sizes, Values
+from generator.elaborate.common import fields, options, origin, unique
+from generator.model import Example, Field, FieldType, Layout, Option, Sizes, Values
 from generator.model.telegram import OPEN, Value
 from generator.tree import Node
 
@@ -67,7 +67,7 @@ def _field(node: Node, name: str, big: bool, known: list[str]) -> Field:
         big=big if order is None else order == "big",
         constant=node.get("constant"),
         values=options(node, "values"),
-        bits=_bits(node),
+        bits=fields(node, "bits"),
         bit_values=tuple(_bit_values(node)),
         description=str(node.get("description", "")).strip(),
         where=node.at("name"),
@@ -86,16 +86,11 @@ def _sizes(node: Node) -> Sizes:
     return Sizes(str(node.get("by")), tuple((int(k, 0), int(v)) for k, v in table.data.items()), node.get("times"))
 
 
-def _bits(node: Node) -> tuple[BitField, ...]:
-    child = node.child("bits")
-    return () if child is None else tuple(BitField(low, high, str(child.data[key])) for key, low, high in runs(child))
-
-
 def _bit_values(node: Node) -> list[tuple[str, tuple[Option, ...]]]:
     parent = node.child("bit_values")
     if parent is None:
         return []
-    parts = [bits.label for bits in _bits(node)]
+    parts = [bits.label for bits in fields(node, "bits")]
     for name in parent.data:
         if name not in parts:
             hint = suggestion(name, parts, "parts")
