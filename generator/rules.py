@@ -15,8 +15,9 @@ RULES: dict[str, str] = {
     "yaml-number": "Integers have at most 20 characters.",
     "yaml-null": "No value is empty; what is unknown is left out.",
     "file-unknown": "Every file in spec is of a known kind and stands in its place.",
-    "file-missing": "A device has a device.yaml, a drive a drive.yaml, and spec a release.yaml.",
+    "file-missing": "A device has a device.yaml, a drive a drive.yaml, and spec a release.yaml and every schema.",
     # Schema
+    "schema-file": "The schemas in spec/schema are JSON Schemas whose patterns and references hold.",
     "schema": "Files fit the JSON Schemas in spec/schema, the one list of legal keys.",
     "key-unknown": "Every key is one that the schema lists.",
     "key-missing": "Every key that the schema requires is given.",

@@ -91,9 +91,8 @@ def _check_formula(erratum: Erratum, finding: Finding, problems: Problems) -> No
             problems.add(
                 "erratum-formula",
                 erratum.where,
-                f"erratum '{erratum.id}' divides by 0",
-                compared=[(name, _show(number)) for name, number in finding.variables.items()],
-                hint="correct the formula",
+                f"a formula of erratum '{erratum.id}' divides by 0",
+                hint="behind 'mod' stands a number other than 0",
             )
             return
 

@@ -101,9 +101,8 @@ def is_within(run: str, highest: int, node: Node, where: Where) -> bool:
     node.problems.add(
         "run-order",
         where,
-        f"'{run}' does not ascend" if high < low else f"'{run}' is longer than what it counts",
-        compared=[("last possible number", highest)],
-        hint="write the lower number first" if high < low else "end the run at a number that can exist",
+        f"'{run}' does not ascend" if high < low else f"'{run}' goes beyond {highest}, the last possible number",
+        hint="write the lower number first" if high < low else f"end at {highest} or before",
     )
     return False
 

@@ -84,8 +84,7 @@ def number(node: Node) -> tuple[int, int]:
         node.problems.add(
             "run-order",
             node.at("number"),
-            f"the run has {last - run.first + 1} numbers",
-            compared=[("at most", _LONGEST_RUN)],
+            f"the run has {last - run.first + 1} numbers, more than {_LONGEST_RUN}",
             hint="describe what is printed; a run stands for numbers that can occur",
         )
     else:

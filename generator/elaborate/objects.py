@@ -58,8 +58,7 @@ def _expand(node: Node, frame: Frame) -> Iterator[DictionaryObject]:
         node.problems.add(
             "run-order",
             node.at("index"),
-            f"the run has {count} objects",
-            compared=[("at most", _LONGEST_RUN)],
+            f"the run has {count} objects, more than {_LONGEST_RUN}",
             hint="list the objects that the manual describes",
         )
         return
