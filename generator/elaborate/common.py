@@ -5,7 +5,7 @@ from collections.abc import Iterator, Mapping
 
 from generator.diagnostics import suggestion
 from generator.model import Bit, BitField, DataType, Default, Manual, Option, Origin, Where
-from generator.notation import node_relative
+from generator.notation import HIGHEST_BIT, node_relative
 from generator.tree import Node
 
 CODE_TYPES = {
@@ -36,9 +36,6 @@ OBJECT_TYPES = {
     "DOMAIN": DataType.DOMAIN,
 }
 """Data types of objects as the manuals abbreviate them."""
-
-HIGHEST_BIT = 63
-"""Last bit that a number can have."""
 
 _PLACEHOLDER = re.compile(r"\{([a-z]+)(\+1)?\}")
 _BRACES = re.compile(r"\{[^}]*\}?|\}")

@@ -11,6 +11,7 @@ from generator.notation import numbers, references
 from generator.tree import Node
 
 _LONGEST_RUN = 0x10000
+_HIGHEST = 0xFFFFFFFF
 
 
 @dataclass(frozen=True, slots=True)
@@ -95,6 +96,14 @@ def number(node: Node) -> tuple[int, int]:
 def _entry(node: Node, slot: Slot | None, first: int, last: int, printed: Node | None, frame: Frame) -> ErrorEntry:
     kind = str(node.get("kind"))
     offset = slot.error_offset if slot else 0
+    if not 0 <= first + offset <= last + offset <= _HIGHEST:
+        node.problems.add(
+            "error-number",
+            node.at("number"),
+            f"{last + offset} is no error number" if first + offset >= 0 else f"{first + offset} is no error number",
+            compared=[("highest", _HIGHEST), ("offset of the slot", offset)],
+            hint="correct the number or the 'error_offset' of the slot",
+        )
     values = {"slot": slot.name} if slot else {}
     name = fill(str(node.get("name")), node, "name", dict(values))
     place = slot.name if slot else BASE

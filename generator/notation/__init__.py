@@ -31,6 +31,8 @@ class NotationError(Exception):
 
 HIGHEST_SUBINDEX = 255
 """Last subcode of a code and last sub-index of an object: a byte."""
+HIGHEST_BIT = 63
+"""Last bit that a number can have."""
 _HIGHEST_INDEX = 0xFFFF
 _LONGEST = 250
 """Characters that a text in a notation can have; keeps formulas and numbers small."""
@@ -306,4 +308,7 @@ def filler(text: str) -> Filler:
     if "FIELD" in parts:
         return Filler(What.BEHIND, field=parts["FIELD"][0])
     low, high = map(int, parts["INT"]) if "INT" in parts else (None, None)
+    if low is not None and high is not None and not low <= high <= HIGHEST_BIT:
+        message = f"bits ascend and end at {HIGHEST_BIT} or before, not {low} ... {high}"
+        raise NotationError(message, text.index(str(low)), _EXAMPLES["filler"])
     return Filler(What(parts["WHAT"][0]), low, high)
