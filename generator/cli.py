@@ -4,6 +4,7 @@ import argparse
 import json
 import sys
 from collections.abc import Sequence
+from contextlib import suppress
 from pathlib import Path
 from urllib.parse import urlsplit
 
@@ -38,6 +39,15 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return _explain(options.rule)
     if not options.spec.is_dir():
         parser.error(f"there is no folder {options.spec}")
+    try:
+        return _run(options)
+    except OSError as error:
+        place = error.filename or "the output"
+        print(f"error: cannot write {place}: {error.strerror or error}; nothing was written", file=sys.stderr)
+        return 1
+
+
+def _run(options: argparse.Namespace) -> int:
     if options.command in ("build", "site"):
         url = options.url if options.command == "site" else None
         return _build(options.spec, options.out, options.format, url)
@@ -148,7 +158,8 @@ def _build(spec: Path, out: Path, style: str, url: str | None) -> int:
     except DiagnosticsError as error:
         return _show(error, style)
     changed = write(out, files, sources)
-    (out / _STATE).write_text(json.dumps(state), encoding="ascii")
+    with suppress(OSError):  # without it the next build makes everything again
+        (out / _STATE).write_text(json.dumps(state), encoding="ascii")
     print(f"{out.name}: {len(files)} files, {len(changed)} files changed")
     return 0
 
@@ -216,11 +227,7 @@ def _dcf(options: argparse.Namespace) -> int:
         else:
             sys.stderr.write(mistakes.as_text(error.mistakes) + "\nnothing was written\n")
         return 2
-    try:
-        save(options.out, contents)
-    except OSError as error:
-        print(f"{options.out}: {error.strerror}; nothing was written", file=sys.stderr)
-        return 1
+    save(options.out, contents)
     for name in contents:
         print(options.out / name)
     return 0

@@ -5,6 +5,8 @@ from dataclasses import dataclass, replace
 
 from generator.model.telegram import OPEN, Field, FieldType, Layout, Value, Values
 
+_LONGEST = 0xFFFF
+
 
 class CodecError(Exception):
     """Bytes or values that do not fit a layout; the text says which field and why."""
@@ -118,8 +120,11 @@ def _decode_group(
     count = _number(field.count, scope) if field.count is not None else None
     found: list[Values] = []
     while (count is None and position < len(data)) or (count is not None and len(found) < count):
-        values, position = _decode_fields(field.fields, data, position, scope)
+        values, end = _decode_fields(field.fields, data, position, scope)
+        if end == position:
+            raise CodecError(f"an entry of group '{field.name}' has no bytes")
         found.append(values)
+        position = end
     return tuple(found), position
 
 
@@ -172,14 +177,26 @@ def _encode_value(field: Field, value: Value, length: int | None) -> list[int | 
         return list(raw)
     if not isinstance(value, str):
         raise CodecError(f"field '{field.name}' cannot hold a list")
-    if field.type is FieldType.TEXT:
-        return list(value.encode("latin-1"))
-    if field.type is FieldType.BYTES:
-        return list(bytes.fromhex(value))
+    try:
+        if field.type is FieldType.TEXT:
+            return list(value.encode("latin-1"))
+        if field.type is FieldType.BYTES:
+            return list(bytes.fromhex(value))
+    except UnicodeEncodeError:
+        raise CodecError(f"field '{field.name}' cannot hold '{value}': it is not ISO 8859-1") from None
+    except ValueError:
+        raise CodecError(f"field '{field.name}' needs bytes in hexadecimal, not '{value}'") from None
     raise CodecError(f"field '{field.name}' needs a number, not '{value}'")
 
 
 def _length(field: Field, scope: Values) -> int | None:
+    length = _said_length(field, scope)
+    if length is not None and not 0 <= length <= _LONGEST:
+        raise CodecError(f"field '{field.name}' would have {length} bytes, possible are 0 ... {_LONGEST}")
+    return length
+
+
+def _said_length(field: Field, scope: Values) -> int | None:
     if field.sizes is None:
         return _number(field.length, scope) if isinstance(field.length, str) else field.length
     by = _number(field.sizes.by, scope)

@@ -20,9 +20,12 @@ MAX_BYTES = 4 * 1024 * 1024
 """Largest file that is read, in bytes."""
 MAX_DEPTH = 24
 """Deepest nesting of mappings and sequences."""
+MAX_KEY = 100
+"""Characters of the longest key."""
 
 _PARSER = getattr(yaml, "CBaseLoader", yaml.BaseLoader)
 _PLAIN_INT = re.compile(r"(-?(?:0|[1-9][0-9]*)|-?0x[0-9A-Fa-f]+)\Z")
+_CONTROL = re.compile(r"[\x00-\x1f\x7f-\x9f\ufffe\uffff]")
 _WORDS = {"true": True, "false": False}
 
 Mark = tuple[int, int]
@@ -180,6 +183,9 @@ class _Reader:
         if event.value == "<<" and event.implicit[0]:
             self._refuse("yaml-merge", _mark(event), "merge keys are not allowed", "write the keys out")
             return None
+        if len(event.value) > MAX_KEY or _CONTROL.search(event.value):
+            self._refuse("yaml-key", _mark(event), f"a key is one line of at most {MAX_KEY} characters")
+            return None
         return str(event.value)
 
     def _seq(self, depth: int) -> Seq:
@@ -194,6 +200,8 @@ class _Reader:
     def _scalar(self, event: Any) -> Any:
         text = event.value
         if not event.implicit[0]:
+            if _CONTROL.search(text.replace("\n", "")):
+                self._refuse("yaml-encoding", _mark(event), "a control character cannot stand in a text")
             return text
         if _PLAIN_INT.match(text):
             if len(text) > 20:

@@ -1,7 +1,7 @@
 """Validation against the JSON Schemas of spec/schema, with every violation at its place."""
 
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -10,7 +10,7 @@ from referencing import Registry, Resource
 from referencing.jsonschema import DRAFT202012
 
 from generator.diagnostics import Problems, suggestion
-from generator.load import Map, Seq, read
+from generator.load import Map, Mark, Seq, read
 from generator.model.citation import Where
 
 _TYPES = {
@@ -22,33 +22,149 @@ _TYPES = {
 }
 
 
+_SHARED = "common"
+"""Kind of the schema that the others refer to; no file has it."""
+
+_SUFFIX = ".schema.yaml"
+
+
 class Schemas:
     """The schemas by kind of file ("codes", "device", ...)."""
 
-    def __init__(self, folder: Path, label: str, problems: Problems) -> None:
-        """Read ``*.schema.yaml`` of ``folder``; ``label`` is its name in messages."""
-        documents: dict[str, Map] = {}
-        for path in sorted(folder.glob("*.schema.yaml")):
-            data = read(path, f"{label}/{path.name}", problems)
-            if data is not None:
-                documents[path.name.removesuffix(".schema.yaml")] = data
-        registry: Registry[Any] = Registry().with_resources(
-            (str(data["$id"]), Resource.from_contents(data, default_specification=DRAFT202012))
-            for data in documents.values()
-        )
-        self._validators = {
-            kind: Draft202012Validator(data, registry=registry) for kind, data in documents.items() if "type" in data
-        }
+    def __init__(self, folder: Path, label: str, kinds: Iterable[str], problems: Problems) -> None:
+        """Read the schemas of ``kinds`` and those that they refer to; ``label`` is the folder's name in messages.
 
-    @property
-    def kinds(self) -> tuple[str, ...]:
-        """Kinds of files that have a schema."""
-        return tuple(self._validators)
+        Raises:
+            DiagnosticsError: A schema is missing or is none.
+        """
+        names = {kind: f"{label}/{kind}{_SUFFIX}" for kind in sorted({*kinds, _SHARED})}
+        documents: dict[str, Map] = {}
+        for kind, name in names.items():
+            path = folder / f"{kind}{_SUFFIX}"
+            if not path.exists():
+                problems.add("file-missing", Where(name, 1, 1), f"the schema of {kind} is missing")
+            elif (data := read(path, name, problems)) is not None:
+                documents[f"{_PREFIX}{kind}"] = data
+        problems.stop()
+        for kind, name in names.items():
+            _SchemaReader(documents, f"{_PREFIX}{kind}", name, problems).check()
+        problems.stop()
+        registry: Registry[Any] = Registry().with_resources(
+            (id_, Resource.from_contents(data, default_specification=DRAFT202012)) for id_, data in documents.items()
+        )
+        self._names = names
+        self._validators = {
+            kind: Draft202012Validator(documents[f"{_PREFIX}{kind}"], registry=registry) for kind in names
+        }
 
     def check(self, kind: str, data: Map, name: str, problems: Problems) -> None:
         """Note every violation of ``data``, the content of file ``name``."""
-        for error in self._validators[kind].iter_errors(data):
-            _report(error, data, name, problems)
+        try:
+            for error in self._validators[kind].iter_errors(data):
+                _report(error, data, name, problems)
+        except RecursionError:
+            where = Where(self._names[kind], 1, 1)
+            problems.add("schema-file", where, "a reference that the schema follows leads back to itself")
+
+
+_PREFIX = "drivespec:"
+_TEXT, _COUNT = (str,), (int,)
+_PLAIN: dict[str, tuple[type, ...]] = {
+    "$schema": _TEXT,
+    "$id": _TEXT,
+    "$ref": _TEXT,
+    "title": _TEXT,
+    "description": _TEXT,
+    "type": (str, Seq),
+    "pattern": _TEXT,
+    "enum": (Seq,),
+    "required": (Seq,),
+    "const": (str, int, Map, Seq),
+    **dict.fromkeys(("minimum", "maximum", "minLength", "maxLength", "minItems", "maxItems", "minProperties"), _COUNT),
+}
+"""Words of a schema that hold no schema, with the kinds of their values."""
+_SCHEMAS = ("items", "propertyNames", "additionalProperties", "if", "then", "else")
+_SCHEMAS_BY_NAME = ("properties", "patternProperties", "$defs")
+_SCHEMAS_IN_LISTS = ("oneOf", "anyOf", "allOf")
+_WORDS = (*_PLAIN, *_SCHEMAS, *_SCHEMAS_BY_NAME, *_SCHEMAS_IN_LISTS)
+
+
+class _SchemaReader:
+    """Looks at one schema: words that exist, values of their kinds, patterns and references that hold.
+
+    Those words of JSON Schema are known that spec uses; that is faster than its metaschema, and finds unknown words.
+    """
+
+    def __init__(self, documents: Mapping[str, Map], id_: str, name: str, problems: Problems) -> None:
+        self._documents = documents
+        self._id = id_
+        self._name = name
+        self._problems = problems
+
+    def check(self) -> None:
+        """Note every problem."""
+        data = self._documents[self._id]
+        if data.get("$id") != self._id:
+            where = Where(self._name, *data.values_at.get("$id", (1, 1)))
+            self._note(where, f"the $id is {data.get('$id', 'missing')}", f"write '$id: {self._id}'")
+        self._schema(data, (1, 1), "")
+
+    def _schema(self, schema: Any, mark: Mark, path: str) -> None:
+        if not isinstance(schema, Map):
+            self._note(Where(self._name, *mark, path), "a schema is a mapping", "write '{type: ...}'")
+            return
+        for word, value in schema.items():
+            at, below = schema.values_at[word], f"{path}/{word}"
+            if word in _SCHEMAS:
+                if word != "additionalProperties" or not isinstance(value, bool):
+                    self._schema(value, at, below)
+            elif word in _SCHEMAS_BY_NAME and isinstance(value, Map):
+                for name, sub in value.items():
+                    if word == "patternProperties":
+                        self._pattern(name, Where(self._name, *value.keys_at[name], below))
+                    self._schema(sub, value.values_at[name], f"{below}/{name}")
+            elif word in _SCHEMAS_IN_LISTS and isinstance(value, Seq):
+                for place, sub in enumerate(value):
+                    self._schema(sub, value.items_at[place], f"{below}/{place}")
+            else:
+                at = at if word in _WORDS else schema.keys_at[word]
+                self._plain(word, value, Where(self._name, *at, below))
+
+    def _plain(self, word: str, value: Any, where: Where) -> None:
+        fits = isinstance(value, _PLAIN.get(word, ())) and (word == "const" or not isinstance(value, bool))
+        if word not in _WORDS:
+            self._note(where, f"'{word}' is no word of a schema", suggestion(word, _WORDS, "words"))
+        elif not fits:
+            self._note(where, f"{_found(value)} cannot stand behind '{word}'")
+        elif word == "type":
+            for name in [value] if isinstance(value, str) else value:
+                if name not in _TYPES:
+                    self._note(where, f"there is no type '{name}'", suggestion(str(name), list(_TYPES), "types"))
+        elif word == "required" and not all(isinstance(name, str) for name in value):
+            self._note(where, "'required' lists names")
+        elif word == "pattern":
+            self._pattern(value, where)
+        elif word == "$ref":
+            self._reference(value, where)
+
+    def _pattern(self, text: str, where: Where) -> None:
+        try:
+            re.compile(text)
+        except (re.error, OverflowError) as error:
+            self._note(where, f"'{text}' is no pattern: {error}")
+
+    def _reference(self, text: str, where: Where) -> None:
+        document, _, pointer = text.partition("#")
+        found: Any = self._documents.get(document or self._id)
+        for step in pointer.split("/")[1:]:
+            found = found.get(step) if isinstance(found, Map) else None
+        if not isinstance(found, Map):
+            self._note(
+                where, f"'{text}' leads nowhere", "references are '#/$defs/name' or 'drivespec:common#/$defs/name'"
+            )
+
+    def _note(self, where: Where, message: str, hint: str = "") -> None:
+        self._problems.add("schema-file", where, message, hint=hint)
 
 
 def _report(error: Any, data: Map, name: str, problems: Problems) -> None:

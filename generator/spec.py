@@ -23,6 +23,7 @@ _DEVICE_KINDS = (
     "errata",
 )
 _DRIVE_KINDS = ("drive", "codes")
+_KINDS = ("release", "names", "manual", "standard", *_DRIVE_KINDS, *_DEVICE_KINDS)
 
 
 @dataclass(slots=True)
@@ -55,8 +56,7 @@ def load(folder: Path, label: str, problems: Problems) -> Spec:
     Raises:
         DiagnosticsError: A file cannot be read, is misplaced or does not fit its schema.
     """
-    schemas = Schemas(folder / "schema", f"{label}/schema", problems)
-    problems.stop()
+    schemas = Schemas(folder / "schema", f"{label}/schema", _KINDS, problems)
     spec = Spec()
     for path in inputs(folder):
         parts = path.relative_to(folder).parts
@@ -64,7 +64,7 @@ def load(folder: Path, label: str, problems: Problems) -> Spec:
             continue
         name = "/".join((label, *parts))
         kind = _kind(parts)
-        if kind is None or kind not in schemas.kinds:
+        if kind is None:
             _refuse(parts, name, problems)
             continue
         data = read(path, name, problems)

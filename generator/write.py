@@ -1,6 +1,7 @@
 """The only module that writes artifacts: everything is rendered first, then compared and replaced."""
 
 import contextlib
+import errno
 import hashlib
 import json
 import os
@@ -51,6 +52,8 @@ def _replace(folder: Path, files: Mapping[str, bytes]) -> None:
     staged: list[tuple[str, Path]] = []
     try:
         for path, data in files.items():
+            if (folder / path).is_dir():
+                raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR), str(folder / path))
             staged.append((_stage(folder / path, data), folder / path))
         for temporary, final in staged:
             os.replace(temporary, final)

@@ -31,6 +31,7 @@ RULES: tuple[Callable[[Model, Device], Iterator[Finding]], ...] = (
     telegrams.examples,
     telegrams.identifiers,
     telegrams.services,
+    telegrams.messages,
     telegrams.formulas,
     telegrams.assignments,
     telegrams.switches,

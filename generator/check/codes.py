@@ -5,6 +5,9 @@ from collections.abc import Iterator
 from generator.check.finding import Finding
 from generator.model import Code, CodeRef, DataType, Device, Model, NodeRelative, ObjectRef
 
+STRING_CHARACTERS = "characters of ISO 8859-1"
+"""What a string on a bus consists of."""
+
 
 def printed_indexes(model: Model, device: Device) -> Iterator[Finding]:
     """Rule code-index: each printed decimal and hexadecimal index against the canonical one."""
@@ -98,6 +101,9 @@ def defaults(model: Model, device: Device) -> Iterator[Finding]:
     """Rules default-type and default-range, for the code and each subcode."""
     for code in device.codes:
         for ref, value in _defaults(code):
+            if not fits_string(value, code.data_type):
+                message = f"{code.type_name} cannot hold the default '{value}'"
+                yield _value_finding("default-type", code, "default", str(value), STRING_CHARACTERS, message, ref)
             if not code.data_type.is_number or not isinstance(value, int):
                 continue
             if not code.data_type.lowest <= value <= code.data_type.highest:
@@ -230,6 +236,11 @@ def _value_finding(
         message=f"{ref or code.ref}: {message}",
         where=code.where,
     )
+
+
+def fits_string(value: object, data_type: DataType) -> bool:
+    """Whether a default of a string has characters that travel as one byte each."""
+    return data_type.is_number or not isinstance(value, str) or all(char <= "\xff" for char in value)
 
 
 def fits(value: object, data_type: DataType) -> bool:

@@ -87,6 +87,14 @@ def _check_formula(erratum: Erratum, finding: Finding, problems: Problems) -> No
                 hint=f"{known} can stand here",
             )
             return
+        except ZeroDivisionError:
+            problems.add(
+                "erratum-formula",
+                erratum.where,
+                f"a formula of erratum '{erratum.id}' divides by 0",
+                hint="behind 'mod' stands a number other than 0",
+            )
+            return
 
 
 def _is_prefix(place: tuple[str, ...], full: str) -> bool:
@@ -97,7 +105,7 @@ def _fits(erratum: Erratum, finding: Finding) -> bool:
     try:
         printed = erratum.printed(finding.variables) if erratum.printed is not None else finding.printed
         used = erratum.used(finding.variables)
-    except KeyError:
+    except (KeyError, ZeroDivisionError):
         return False
     if isinstance(printed, str) and isinstance(used, str) and ELLIPSIS in printed + used:
         return _fits_pattern(printed, used, finding)

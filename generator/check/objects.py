@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator
 
-from generator.check.codes import fits
+from generator.check.codes import STRING_CHARACTERS, fits, fits_string
 from generator.check.finding import Finding
 from generator.model import CodeRef, Device, DictionaryObject, Model, ObjectRef, SubIndex
 
@@ -17,6 +17,9 @@ def values(model: Model, device: Device) -> Iterator[Finding]:
     """Rules range-order, range-type, default-type, default-range, selection-type and bit-width of sub-indexes."""
     for _, sub, ref in _subs(device):
         kind = sub.data_type
+        if not fits_string(sub.default, kind):
+            message = f"{kind.canopen_name} cannot hold the default '{sub.default}'"
+            yield _finding("default-type", ref, sub, "default", str(sub.default), STRING_CHARACTERS, message)
         if not kind.is_number:
             continue
         if sub.range is not None:

@@ -1,6 +1,7 @@
 """Checks of what can be executed: telegrams, formulas, DIP switches, LED patterns."""
 
 from collections.abc import Iterator
+from dataclasses import replace
 from itertools import combinations
 
 from generator.check.finding import Finding
@@ -8,7 +9,7 @@ from generator.check.objects import missing_code
 from generator.codec import CodecError, decode, encode
 from generator.model import Choice, CodeRef, DataType, Device, Example, Layout, Message, Model, Service, Values
 from generator.model.telegram import OPEN, Value
-from generator.wire import Call, Layouts, Octets, agree, bind, build
+from generator.wire import Call, Layouts, Octets, agree, bind, build, carries
 
 _TO_DEVICE = "to device"
 
@@ -148,6 +149,43 @@ def services(model: Model, device: Device) -> Iterator[Finding]:
             )
 
 
+def messages(model: Model, device: Device) -> Iterator[Finding]:
+    """Rule telegram-service: the telegrams of a service can be built with the greatest numbers of the device."""
+    layouts = {layout.id: layout for layout in device.layouts}
+    numbers = Call(
+        index=max([*(code.index for code in device.codes), *(entry.index for entry in device.objects)], default=0),
+        code=max((code.number for code in device.codes), default=0),
+        subindex=max((sub.number for entry in device.objects for sub in entry.subindexes), default=0),
+        register=0,
+    )
+    for service in device.services:
+        error = max((entry.last for entry in device.errors if entry.kind == service.errors), default=0)
+        for data_type in (data_type for data_type in DataType if carries(service, data_type)):
+            value = 0 if data_type.is_number else b""
+            call = replace(numbers, data_type=data_type, error=error, value=value)
+            problem = next((p for m in service.messages if (p := _obstacle(service, m, layouts, call))), None)
+            if problem is not None:
+                yield Finding(
+                    rule="telegram-service",
+                    subject=f"service:{service.id}",
+                    place="values",
+                    printed=problem,
+                    expected="a telegram",
+                    message=f"a telegram of '{service.id}' cannot be built: {problem}",
+                    where=service.where,
+                    hint="correct 'values', or the layout",
+                )
+                break
+
+
+def _obstacle(service: Service, message: Message, layouts: Layouts, call: Call) -> str | None:
+    try:
+        build(service, message, layouts, call)
+    except CodecError as error:
+        return str(error)
+    return None
+
+
 def _layouts(message: Message) -> tuple[object, ...]:
     if isinstance(message.layout, Choice):
         return tuple(name for _, name in message.layout.cases)
@@ -180,6 +218,17 @@ def formulas(model: Model, device: Device) -> Iterator[Finding]:
                     printed="none",
                     expected=str(error.args[0]),
                     message=f"the example gives no value for {error.args[0]}",
+                    where=example.where,
+                )
+                continue
+            except ZeroDivisionError:
+                yield Finding(
+                    rule="formula-example",
+                    subject=f"formula:{formula.id}",
+                    place="values",
+                    printed=example.result,
+                    expected="none",
+                    message=f"{formula.expression} divides by 0",
                     where=example.where,
                 )
                 continue
@@ -221,7 +270,7 @@ def switches(model: Model, device: Device) -> Iterator[Finding]:
         for row in group.rows:
             if (
                 group.weights
-                and row.value.isdigit()
+                and row.value.isdecimal()
                 and "x" not in row.positions
                 and group.sum(row.positions) != int(row.value)
             ):

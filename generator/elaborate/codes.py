@@ -29,7 +29,7 @@ from generator.model import (
     Slot,
     SubCode,
 )
-from generator.notation import attributes, node_relative, numbers, references, value_range
+from generator.notation import HIGHEST_SUBINDEX, attributes, node_relative, numbers, references, value_range
 from generator.tree import Node
 
 _NEEDED = ("name", "type")
@@ -197,7 +197,7 @@ def _subcodes(node: Node, is_number: bool) -> Iterator[SubCode]:
     parent = node.child("subcodes")
     if parent is None:
         return
-    for key, low, high in runs(parent):
+    for key, low, high in runs(parent, HIGHEST_SUBINDEX):
         child = parent.child(key)
         assert child is not None
         for number in range(low, high + 1):

@@ -4,8 +4,8 @@ import re
 from collections.abc import Iterator, Mapping
 
 from generator.diagnostics import suggestion
-from generator.model import Bit, BitField, DataType, Default, Manual, Option, Origin
-from generator.notation import node_relative, value_range
+from generator.model import Bit, BitField, DataType, Default, Manual, Option, Origin, Where
+from generator.notation import HIGHEST_BIT, node_relative, value_range
 from generator.tree import Node
 
 CODE_TYPES = {
@@ -83,13 +83,34 @@ def origin(node: Node) -> Origin:
     return Origin(node.get("origin", "manual"))
 
 
-def runs(node: Node) -> Iterator[tuple[str, int, int]]:
-    """Keys of a mapping that are numbers or runs ("1...8"), each with first and last; order is checked."""
+def bounds(run: str) -> tuple[int, int]:
+    """First and last of a number or a run ("1...8")."""
+    first, _, last = run.partition("...")
+    return int(first), int(last or first)
+
+
+def is_within(run: str, highest: int, node: Node, where: Where) -> bool:
+    """Whether a run ascends and ends at ``highest``; noted at ``where`` if not."""
+    low, high = bounds(run)
+    if low <= high <= highest:
+        return True
+    node.problems.add(
+        "run-order",
+        where,
+        f"'{run}' does not ascend" if high < low else f"'{run}' goes beyond {highest}, the last possible number",
+        hint="write the lower number first" if high < low else f"end at {highest} or before",
+    )
+    return False
+
+
+def runs(node: Node, highest: int) -> Iterator[tuple[str, int, int]]:
+    """Keys of a mapping that are numbers or runs ("1...8"), each with first and last; order and limit are checked."""
     previous = -1
     for key in node.data:
-        first, _, last = key.partition("...")
-        low, high = int(first), int(last or first)
-        if low <= previous or high < low:
+        if not is_within(key, highest, node, node.at_key(key)):
+            continue
+        low, high = bounds(key)
+        if low <= previous:
             node.problems.add(
                 "run-order",
                 node.at_key(key),
@@ -126,7 +147,7 @@ def bits(node: Node, key: str = "bits") -> tuple[Bit, ...]:
         return ()
     return tuple(
         Bit(number, fill(str(child.data[run]), child, run, {"n": number, "i": number - low + 1}))
-        for run, low, high in runs(child)
+        for run, low, high in runs(child, HIGHEST_BIT)
         for number in range(low, high + 1)
     )
 
@@ -136,7 +157,7 @@ def fields(node: Node, key: str = "fields") -> tuple[BitField, ...]:
     child = node.child(key)
     if child is None:
         return ()
-    return tuple(BitField(low, high, str(child.data[run])) for run, low, high in runs(child))
+    return tuple(BitField(low, high, str(child.data[run])) for run, low, high in runs(child, HIGHEST_BIT))
 
 
 def default(node: Node, key: str, value: object, is_number: bool) -> Default | None:

@@ -11,7 +11,7 @@ from generator.elaborate import indicators as panel
 from generator.elaborate import objects as object_table
 from generator.elaborate import services as service_table
 from generator.elaborate import telegrams as telegram_table
-from generator.elaborate.common import known_manual, optional_text, origin
+from generator.elaborate.common import bounds, is_within, known_manual, optional_text, origin
 from generator.elaborate.manuals import Standards, object_run
 from generator.model import (
     BitField,
@@ -31,6 +31,8 @@ from generator.tree import Node, SourceFile
 
 NO_INDEX_BASE = 0
 """Index base of devices without codes."""
+HIGHEST_ERROR_BIT = 31
+"""Last bit of an error number."""
 
 
 def drive(file: SourceFile) -> Drive:
@@ -65,8 +67,9 @@ def drive(file: SourceFile) -> Drive:
             for node in root.items("responses")
         ),
         error_fields=tuple(
-            (name, BitField(int(low), int(high), name))
-            for name, (low, high) in ((name, str(run).split("...")) for name, run in layout.data.items())
+            (name, BitField(*bounds(run), name))
+            for name, run in layout.data.items()
+            if is_within(run, HIGHEST_ERROR_BIT, layout, layout.at(name))
         ),
         reported_fields=reported,
         error_fields_origin=origin(number),

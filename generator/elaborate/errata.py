@@ -57,10 +57,10 @@ _VARIABLES = ("code", "index", "number")
 
 
 def _value(node: Node, key: str) -> Callable[[dict[str, int]], int | str]:
-    """A literal, or a formula where the text names a variable of the subject."""
+    """A literal, or a formula where the text names a variable of what the rule finds."""
     value = node.get(key)
     words = str(value).replace("(", " ").replace(")", " ").split()
-    if isinstance(value, int) or not any(word in _VARIABLES for word in words) or not _is_formula(words):
+    if "rule" not in node or isinstance(value, int) or not _is_formula(words):
         return lambda _: value
     compiled = node.read(key, formula)
     if compiled is None:
@@ -69,7 +69,8 @@ def _value(node: Node, key: str) -> Callable[[dict[str, int]], int | str]:
 
 
 def _is_formula(words: list[str]) -> bool:
-    return all(w in _VARIABLES or w in ("+", "-", "*", "mod") or w.isdigit() or w.startswith("0x") for w in words)
+    signs = (*_VARIABLES, "+", "-", "*", "mod")
+    return any(w in _VARIABLES for w in words) and all(w in signs or w.isdecimal() or w.startswith("0x") for w in words)
 
 
 def resolver(codes: Iterable[CodeRef], objects: Iterable[ObjectRef], errors: Iterable[ErrorRef]) -> Resolver:

@@ -11,6 +11,9 @@ from generator.model.table import NOTHING_PRINTED
 from generator.notation import numbers, references
 from generator.tree import Node
 
+_LONGEST_RUN = 0x10000
+_HIGHEST = 0xFFFFFFFF
+
 
 @dataclass(frozen=True, slots=True)
 class Frame:
@@ -79,12 +82,29 @@ def number(node: Node) -> tuple[int, int]:
         node.problems.add(
             "run-order", node.at("number"), "the run does not ascend", hint="write the lower number first"
         )
-    return run.first, last
+    elif last - run.first >= _LONGEST_RUN:
+        node.problems.add(
+            "run-order",
+            node.at("number"),
+            f"the run has {last - run.first + 1} numbers, more than {_LONGEST_RUN}",
+            hint="describe what is printed; a run stands for numbers that can occur",
+        )
+    else:
+        return run.first, last
+    return 0, 0
 
 
 def _entry(node: Node, slot: Slot | None, first: int, last: int, printed: Node | None, frame: Frame) -> ErrorEntry:
     kind = str(node.get("kind"))
     offset = slot.error_offset if slot else 0
+    if not 0 <= first + offset <= last + offset <= _HIGHEST:
+        node.problems.add(
+            "error-number",
+            node.at("number"),
+            f"{last + offset} is no error number" if first + offset >= 0 else f"{first + offset} is no error number",
+            compared=[("highest", _HIGHEST), ("offset of the slot", offset)],
+            hint="correct the number or the 'error_offset' of the slot",
+        )
     values = {"slot": slot.name} if slot else {}
     name = fill(str(node.get("name")), node, "name", dict(values))
     place = slot.name if slot else BASE

@@ -142,9 +142,11 @@ def tables(root: Node, errata: ErrataIndex, connectors: Sequence[Connector]) -> 
 
 def _table(node: Node, errata: ErrataIndex, connectors: Sequence[Connector]) -> Table:
     columns = tuple(Column(str(c.get("id")), str(c.get("name")), str(c.get("unit", ""))) for c in node.items("columns"))
-    rows = node.get("rows", ())
-    for position, row in enumerate(rows):
-        if len(row) != len(columns):
+    rows = []
+    for position, row in enumerate(node.get("rows", ())):
+        if len(row) == len(columns):
+            rows.append(row)
+        else:
             node.problems.add(
                 "list-length",
                 node.at("rows"),

@@ -7,7 +7,7 @@ from generator.elaborate.common import OBJECT_TYPES, default, known_manual, opti
 from generator.model import Chapter, CobId, Manual, ObjectRef, StandardObject, StandardSubIndex
 from generator.model.gsd import DpTelegrams
 from generator.model.table import Connector, Contact
-from generator.notation import references
+from generator.notation import HIGHEST_SUBINDEX, references
 from generator.tree import Node, SourceFile
 
 
@@ -159,7 +159,7 @@ def _object(node: Node) -> StandardObject:
 
 def _subindexes(subs: Node) -> list[StandardSubIndex]:
     found = []
-    for key, low, high in runs(subs):
+    for key, low, high in runs(subs, HIGHEST_SUBINDEX):
         node = subs.child(key)
         assert node is not None
         data_type = OBJECT_TYPES[str(node.get("type"))]
@@ -179,7 +179,7 @@ def _subindexes(subs: Node) -> list[StandardSubIndex]:
 
 
 def object_run(node: Node) -> tuple[int, int]:
-    """First and last index of an object entry ("I-1000", "I-1400 ... I-1403", "P-918")."""
+    """First and last index of an object entry ("I-1000", "I-1400 ... I-1403", "P-918"); (0, 0) for a wrong one."""
     found = node.read("index", references) or ()
     for each in found:
         if each.open_run is not None:

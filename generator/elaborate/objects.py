@@ -18,10 +18,11 @@ from generator.model import (
     StandardSubIndex,
     SubIndex,
 )
-from generator.notation import references, value_range
+from generator.notation import HIGHEST_SUBINDEX, references, value_range
 from generator.tree import Node
 
 PROFIDRIVE = "P-"
+_LONGEST_RUN = 512
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,6 +54,14 @@ def objects(root: Node, frame: Frame) -> tuple[DictionaryObject, ...]:
 def _expand(node: Node, frame: Frame) -> Iterator[DictionaryObject]:
     first, last = object_run(node)
     count = last - first + 1
+    if count > _LONGEST_RUN:
+        node.problems.add(
+            "run-order",
+            node.at("index"),
+            f"the run has {count} objects, more than {_LONGEST_RUN}",
+            hint="list the objects that the manual describes",
+        )
+        return
     for index in range(first, last + 1):
         place = index - first
         kind = "profidrive" if str(node.get("index")).startswith(PROFIDRIVE) else "canopen"
@@ -103,7 +112,7 @@ def _subindexes(
 ) -> Iterator[SubIndex]:
     parent = node.child("subindexes")
     assert parent is not None
-    for key, low, high in runs(parent):
+    for key, low, high in runs(parent, HIGHEST_SUBINDEX):
         child = parent.child(key)
         assert child is not None
         for number in range(low, high + 1):

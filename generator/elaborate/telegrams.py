@@ -5,8 +5,8 @@ from dataclasses import replace
 
 from generator.diagnostics import suggestion
 from generator.elaborate.codes import ErrataIndex
-from generator.elaborate.common import optional_text, options, origin, runs, unique
-from generator.model import BitField, CobId, Example, Field, FieldType, Layout, Option, Sizes, Values
+from generator.elaborate.common import fields, optional_text, options, origin, unique
+from generator.model import CobId, Example, Field, FieldType, Layout, Option, Sizes, Values
 from generator.model.telegram import OPEN, Value
 from generator.tree import Node
 
@@ -75,7 +75,7 @@ def _field(node: Node, name: str, big: bool, known: list[str], sized: Mapping[st
         big=big if order is None else order == "big",
         constant=node.get("constant"),
         values=options(node, "values"),
-        bits=_bits(node),
+        bits=fields(node, "bits"),
         bit_values=tuple(_bit_values(node)),
         description=str(node.get("description", "")).strip(),
         where=node.at("name"),
@@ -106,16 +106,11 @@ def _fill(node: Node | None, sized: Mapping[str, Sizes]) -> Sizes | None:
     return replace(sized[name], fills=int(node.get("to")))
 
 
-def _bits(node: Node) -> tuple[BitField, ...]:
-    child = node.child("bits")
-    return () if child is None else tuple(BitField(low, high, str(child.data[key])) for key, low, high in runs(child))
-
-
 def _bit_values(node: Node) -> list[tuple[str, tuple[Option, ...]]]:
     parent = node.child("bit_values")
     if parent is None:
         return []
-    parts = [bits.label for bits in _bits(node)]
+    parts = [bits.label for bits in fields(node, "bits")]
     for name in parent.data:
         if name not in parts:
             hint = suggestion(name, parts, "parts")

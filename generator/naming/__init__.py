@@ -65,7 +65,7 @@ def safe(name: str, language: str, leading: str = "n") -> str:
     >>> safe("off", "c"), safe("class", "python"), safe("10_kbps", "rust", "rate_")
     ('off', 'class_', 'rate_10_kbps')
     """
-    if not name or name[0].isdigit():
+    if not name or name[0].isdecimal():
         name = leading + name
     return name + "_" if name in reserved(language) else name
 

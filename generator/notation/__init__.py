@@ -29,6 +29,14 @@ class NotationError(Exception):
         self.example = example
 
 
+HIGHEST_SUBINDEX = 255
+"""Last subcode of a code and last sub-index of an object: a byte."""
+HIGHEST_BIT = 63
+"""Last bit that a number can have."""
+_HIGHEST_INDEX = 0xFFFF
+_LONGEST = 250
+"""Characters that a text in a notation can have; keeps formulas and numbers small."""
+
 _EXAMPLES = {
     "references": "C13372/2...10",
     "range": "0 ... 65535 ms",
@@ -49,6 +57,8 @@ def _parser(name: str) -> Lark:
 
 @lru_cache(maxsize=4096)
 def _parse(name: str, text: str) -> Tree[Token]:
+    if len(text) > _LONGEST:
+        raise NotationError(f"the text has {len(text)} characters, more than {_LONGEST}", 0, _EXAMPLES[name])
     try:
         return _parser(name).parse(text)
     except UnexpectedInput as error:
@@ -84,47 +94,64 @@ def references(text: str) -> tuple[RefRun, ...]:
 
 
 def _reference(tree: Tree[Token]) -> RefRun:
-    tokens: list[Any] = tree.children
-    parts = [None if t is None else str(t) for t in tokens if t is None or t.type != "DOTS"]
+    children: list[Any] = tree.children
+    tokens = [token for token in children if token is None or token.type != "DOTS"]
     match tree.data:
         case "code":
-            number = int(str(parts[0])[1:])
-            if parts[1] is None:
+            number = int(tokens[0][1:])
+            if tokens[1] is None:
                 return RefRun((CodeRef(number),))
-            first = int(parts[1])
-            last = int(str(parts[-1])) if parts[-1] is not None else first
-            return RefRun(tuple(CodeRef(number, k) for k in range(first, last + 1)))
+            return RefRun(tuple(CodeRef(number, k) for k in _run(_part, tokens[1], tokens[2] or tokens[1])))
         case "code_run":
-            ends = [CodeRef(int(str(parts[i])[1:]), _optional(parts[i + 1])) for i in (0, 2)]
+            ends = [CodeRef(int(tokens[i][1:]), _optional(tokens[i + 1])) for i in (0, 2)]
             return RefRun((), (ends[0], ends[1]))
         case "object":
-            index = _object_index(str(parts[0]))
-            if parts[1] is None:
+            index = _object_index(tokens[0])
+            if tokens[1] is None:
                 return RefRun((ObjectRef(index),))
-            first = int(parts[1])
-            last = int(str(parts[-1])) if parts[-1] is not None else first
-            return RefRun(tuple(ObjectRef(index, k) for k in range(first, last + 1)))
+            return RefRun(tuple(ObjectRef(index, k) for k in _run(_part, tokens[1], tokens[2] or tokens[1])))
         case "object_run":
-            low, high = _object_index(str(parts[0])), _object_index(str(parts[2]))
-            sub = _optional(parts[1])
+            sub = _optional(tokens[1])
             if sub is None:
-                return RefRun((), (ObjectRef(low), ObjectRef(high)))
-            return RefRun(tuple(ObjectRef(i, sub) for i in range(low, high + 1)))
+                return RefRun((), (ObjectRef(_object_index(tokens[0])), ObjectRef(_object_index(tokens[2]))))
+            return RefRun(tuple(ObjectRef(i, sub) for i in _run(_object_index, tokens[0], tokens[2])))
         case "error":
-            return RefRun((ErrorRef("", int(str(parts[0])[2:], 16)),))
+            return RefRun((ErrorRef("", int(tokens[0][4:], 16)),))
         case "error_run":
-            lowest, highest = (ErrorRef("", int(str(part)[2:], 16)) for part in parts)
+            lowest, highest = (ErrorRef("", int(token[4:], 16)) for token in tokens)
             return RefRun((), (lowest, highest))
         case _:
-            return RefRun((str(parts[0]),))
+            return RefRun((str(tokens[0]),))
 
 
-def _optional(part: str | None) -> int | None:
-    return None if part is None else int(part)
+def _run(read: Callable[[Token], int], first: Token, last: Token) -> range:
+    """Every number of a run, whose ends are read by ``read``."""
+    low, high = read(first), read(last)
+    if high < low:
+        raise NotationError(f"the run from {first} to {last} does not ascend", _column(last), _EXAMPLES["references"])
+    return range(low, high + 1)
 
 
-def _object_index(text: str) -> int:
-    return int(text[2:], 16) if text.startswith("I-") else int(text[2:])
+def _limited(token: Token, number: int, highest: int) -> int:
+    if number > highest:
+        raise NotationError(f"{token} is above {highest}, the last possible", _column(token), _EXAMPLES["references"])
+    return number
+
+
+def _part(token: Token) -> int:
+    return _limited(token, int(token), HIGHEST_SUBINDEX)
+
+
+def _optional(token: Token | None) -> int | None:
+    return None if token is None else _part(token)
+
+
+def _object_index(token: Token) -> int:
+    return _limited(token, int(token[2:], 16 if token.startswith("I-") else 10), _HIGHEST_INDEX)
+
+
+def _column(token: Token) -> int:
+    return token.column - 1 if token.column else 0
 
 
 def value_range(text: str) -> Range:
@@ -170,8 +197,7 @@ def _number_run(text: str, run: Tree[Token], base: int) -> NumberRun:
         try:
             values.append((int(digits, actual), actual))
         except ValueError:
-            column = token.column - 1 if token.column else 0
-            raise NotationError(f"'{digits}' is not a decimal number", column, text) from None
+            raise NotationError(f"'{digits}' is not a decimal number", _column(token), text) from None
     return NumberRun(values[0][0], values[1][0] if len(values) > 1 else None, values[0][1])
 
 
@@ -211,7 +237,7 @@ def attributes(text: str) -> Attributes:
         if isinstance(token, Token):
             found.setdefault(token.type, []).append(str(token))
     decimal, hexadecimal = found["INDEX"]
-    if not decimal.isdigit():
+    if not decimal.isdecimal():
         raise NotationError(f"'{decimal}' is not a decimal number", 0, _EXAMPLES["attributes"])
     count, *factor = found["INT"]
     return Attributes(
@@ -282,4 +308,7 @@ def filler(text: str) -> Filler:
     if "FIELD" in parts:
         return Filler(What.BEHIND, field=parts["FIELD"][0])
     low, high = map(int, parts["INT"]) if "INT" in parts else (None, None)
+    if low is not None and high is not None and not low <= high <= HIGHEST_BIT:
+        message = f"bits ascend and end at {HIGHEST_BIT} or before, not {low} ... {high}"
+        raise NotationError(message, text.index(str(low)), _EXAMPLES["filler"])
     return Filler(What(parts["WHAT"][0]), low, high)

@@ -152,14 +152,14 @@ def _group(group: SwitchGroup, device: Device, names: Names) -> Group:
 def _row(row: SwitchRow) -> str:
     mask = int("".join("0" if sign == _EITHER else "1" for sign in row.positions), 2)
     closed = int("".join("1" if sign == "1" else "0" for sign in row.positions), 2)
-    number = int(row.value) if row.value.isdigit() else 0
+    number = int(row.value) if row.value.isdecimal() else 0
     return ", ".join(
         (
             string(row.value),
             integer(number, 32),
             integer(mask, 16, hexadecimal=True),
             integer(closed, 16, hexadecimal=True),
-            "true" if row.value.isdigit() else "false",
+            "true" if row.value.isdecimal() else "false",
         )
     )
 

@@ -82,7 +82,7 @@ def counts_on(text: str, other: str, step: int) -> bool:
         return True
     ours, theirs = _NUMBER.split(text), _NUMBER.split(other)
     return len(ours) == len(theirs) and all(
-        mine == its or (mine.isdigit() and its.isdigit() and int(its) == int(mine) + step)
+        mine == its or (mine.isdecimal() and its.isdecimal() and int(its) == int(mine) + step)
         for mine, its in zip(ours, theirs, strict=True)
     )
 

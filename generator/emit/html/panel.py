@@ -115,7 +115,7 @@ def _switch_facts(links: Links, group: SwitchGroup) -> Iterator[Fact]:
         when = " or ".join(stand(group, positions) for positions in group.code_counts.positions)
         codes = joined([(links.code(ref),) for ref in group.code_counts.codes], " / ")
         yield Fact("A code counts", (*codes, f" where the switches are {when} ", *links.source(group.code_counts.cite)))
-    special = [row for row in group.rows if not row.value.isdigit()]
+    special = [row for row in group.rows if not row.value.isdecimal()]
     if special and len(special) < len(group.rows):
         yield Fact("Special positions", joined([_special(links, group, row) for row in special], "; "))
     yield Fact("Source", links.source(group.cite))

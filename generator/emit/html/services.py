@@ -159,6 +159,6 @@ def _filling(filling: Filling, options: Sequence[Option]) -> str:
 
 
 def _case(key: str) -> str:
-    if not key.isdigit():
+    if not key.isdecimal():
         return key
     return "1 byte" if key == "1" else f"{key} bytes"

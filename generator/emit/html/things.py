@@ -287,7 +287,7 @@ def _named(links: Links) -> Iterator[Thing]:
     """Things that have a name alone."""
     device = links.device
     for group in device.switches:
-        values = " ".join(row.value for row in group.rows if not row.value.isdigit())
+        values = " ".join(row.value for row in group.rows if not row.value.isdecimal())
         switch_words = f"DIP switch {' '.join(group.labels)} {group.unit} {values}"
         yield _thing(links, "switch", group.id, group.name, switch_words)
     for example in device.examples:

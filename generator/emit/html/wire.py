@@ -198,7 +198,7 @@ def _meaning(span: Span, fillings: Mapping[str, Filling], call: Call, value: Val
         return label
     if isinstance(filling, Choice) and isinstance(chosen(filling, call), int):
         case = case_of(filling, call)
-        return case if case is not None and not case.isdigit() and found else ""
+        return case if case is not None and not case.isdecimal() and found else ""
     filler = filling if filling is None else chosen(filling, call)
     if isinstance(filler, Filler):
         return _filled(filler, span, call, value, asks)

@@ -153,7 +153,7 @@ def type_name(*parts: str) -> str:
     """
     name = ""
     for word in (word for part in parts for word in words(part)):
-        name += "_" if name[-1:].isdigit() and word[0].isdigit() else ""
+        name += "_" if name[-1:].isdecimal() and word[0].isdecimal() else ""
         name += word[0].upper() + word[1:]
     return safe(name, "rust", "N")
 
