@@ -332,6 +332,7 @@ def test_records_have_every_field_of_the_model(package: Any) -> None:
     ):
         fields = {enums.get(field.name, field.name) for field in dataclasses.fields(source)}
         left_out = places | in_notes | drawn | of_standards | (as_printed - set(record.__slots__))
+        left_out |= {"title"} if source is CobId else set()  # what its telegrams are for
         assert (set(record.__slots__) - masks) | added == (fields - left_out) | added, source
 
 
