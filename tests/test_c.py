@@ -590,8 +590,8 @@ def test_the_interface_knows_every_word_of_the_schema(root: Path) -> None:
     codes = yaml.safe_load((root / "spec/schema/codes.schema.yaml").read_text(encoding="utf-8"))
     conditions = codes["$defs"]["entry"]["properties"]["conditions"]["items"]["enum"]
     assert set(conditions) <= set(ACCESS_FLAGS)
-    errors = yaml.safe_load((root / "spec/schema/errors.schema.yaml").read_text(encoding="utf-8"))
-    assert set(errors["properties"]["errors"]["items"]["properties"]["kind"]["enum"]) == set(ERROR_KINDS)
+    common = yaml.safe_load((root / "spec/schema/common.schema.yaml").read_text(encoding="utf-8"))
+    assert set(common["$defs"]["error_kind"]["enum"]) == set(ERROR_KINDS)
 
 
 PROBES = """

@@ -91,7 +91,9 @@ def common_header(model: Model, names: Names) -> CommonHeader:
     drives = tuple(_drive_view(drive, names) for drive in model.drives)
     types = tuple(_type_view(data_type) for data_type in DataType if data_type.is_number)
     brief = "Types and facts that several drives share."
-    return CommonHeader("drivespec.h", guard, brief, notes, tuple(sections), drives, types, bool(model.node_addresses))
+    return CommonHeader(
+        "drivespec.h", guard, brief, notes, tuple(sections), drives, types, bool(model.cob_ids and model.node_addresses)
+    )
 
 
 def _drive_view(drive: Drive, names: Names) -> DriveView:
