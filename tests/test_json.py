@@ -2,6 +2,7 @@
 
 import json
 import re
+from dataclasses import fields
 from pathlib import Path
 from typing import Any
 
@@ -9,7 +10,7 @@ import pytest
 from jsonschema import Draft202012Validator
 
 from generator.check.telegrams import show
-from generator.model import Device, Model, NodeRelative
+from generator.model import Code, Device, ErrorEntry, Model, NodeRelative, SubIndex
 from generator.schema import described
 
 CONTRACT = {
@@ -194,3 +195,36 @@ def test_drive_and_bus_are_those_of_the_model(documents: dict[str, Any], model: 
             assert [(e["name"], e["base"]) for e in found["canopen"]["cob_ids"]] == [
                 (entry.name, entry.base) for entry in model.cob_ids
             ]
+
+
+AS_IN_CODES = {"designation": "code", "type_name": "data_type", "scaling": "scaling_factor", "default": "defaults"}
+INSIDE = {
+    Code: {"data_type", "access", "subcodes", "printed_name", "attributes"},
+    SubIndex: {"number", "range", "printed_type", "printed_access"},
+    ErrorEntry: {"named_in"},
+}
+"""Fields that stand in another key: types and accesses as printed in "printed", ends of a range in "min" and "max"."""
+
+
+@pytest.mark.parametrize(
+    ("kind", "table"), [(Code, "codes"), (SubIndex, "subindexes"), (ErrorEntry, "errors")], ids=lambda it: str(it)
+)
+def test_every_field_of_the_model_is_published(documents: dict[str, Any], kind: type, table: str) -> None:
+    """A field that the model gains reaches the document, or is said to stand in another key."""
+    entries = [entry for name, found in documents.items() if name != "schema" for entry in found.get(table, ())]
+    if kind is SubIndex:
+        found = [entry for name, doc in documents.items() if name != "schema" for entry in doc["objects"]]
+        entries = [sub for entry in found for sub in entry["subindexes"]]
+    names = {AS_IN_CODES.get(field.name, field.name) if kind is Code else field.name for field in fields(kind)}
+    assert entries and names - {"where"} - INSIDE[kind] <= set(entries[0])
+
+
+def test_what_was_left_out_once(documents: dict[str, Any], model: Model) -> None:
+    for device in model.devices:
+        for entry, code in zip(documents[device.id]["codes"], device.codes, strict=True):
+            assert (entry["length"], entry["twin_of"]) == (code.length, code.twin_of)
+            described = {str(sub.number): sub.description for sub in code.subcodes if sub.description}
+            assert entry["subcode_descriptions"] == described
+        for entry, error in zip(documents[device.id]["errors"], device.errors, strict=True):
+            assert entry["register"] == error.register
+            assert entry["printed_names"] == {place: name for place, name, _ in error.printed_names}
