@@ -20,7 +20,7 @@ MAX_BYTES = 4 * 1024 * 1024
 """Largest file that is read, in bytes."""
 MAX_DEPTH = 24
 """Deepest nesting of mappings and sequences."""
-MAX_KEY = 100
+MAX_KEY = 250
 """Characters of the longest key."""
 
 _PARSER = getattr(yaml, "CBaseLoader", yaml.BaseLoader)
