@@ -37,17 +37,17 @@ from generator.model import (
 from generator.naming import screaming
 
 WARNINGS = ("-Wall", "-Wextra", "-Wpedantic", "-Wconversion", "-Wshadow", "-Werror")
-LANGUAGES = [("cc", "c99"), ("c++", "c++17")]
-CLANG = [("clang", "c99"), ("clang++", "c++17")]
-COMPILERS = LANGUAGES + [pair for pair in CLANG if shutil.which(pair[0])]
+COMPILERS = [("cc", "c99"), ("c++", "c++17"), ("clang", "c99"), ("clang++", "c++17")]
 SIGNIFICANT = 63
 
 Values = dict[str, int | str]
 
 
 def tool(name: str) -> str:
-    """Path of a program that the tests cannot do without."""
+    """Path of a program; the tests cannot do without it, unless it is clang, which checks what the others do again."""
     found = shutil.which(name)
+    if found is None and name.startswith("clang"):
+        pytest.skip("left out: no clang on this machine")
     if found is None:
         pytest.fail(
             f"'{name}' was not found: the tests of the C target need a C and C++ compiler with binutils (gcc, g++)"
@@ -483,7 +483,7 @@ def test_a_header_costs_nothing_until_it_is_used(
     assert subprocess.run([tool("nm"), str(built)], capture_output=True, text=True, check=True).stdout == ""
 
 
-@pytest.mark.parametrize(("compiler", "standard"), LANGUAGES)
+@pytest.mark.parametrize(("compiler", "standard"), COMPILERS[:2])
 def test_all_headers_together_in_two_files_of_a_program(
     model: Model, c: Path, tmp_path: Path, compiler: str, standard: str
 ) -> None:

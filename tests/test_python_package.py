@@ -1206,13 +1206,17 @@ def smoke(device: Device) -> str:
 
 @pytest.mark.parametrize("version", VERSIONS)
 def test_every_python_version(version: str, distribution: Path, model: Model) -> None:
-    """Runs without a warning under the version, or at least reads as its syntax where it is not installed."""
+    """Runs without a warning under the version."""
     device = model.devices[0]
-    expected = script(path=distribution, code=smoke(device))
     python = shutil.which(f"python{version}") or ""
-    installed = bool(python) and run(python, "--version").returncode == 0
-    if installed:
-        assert script(python=python, path=distribution, code=smoke(device)) == expected
+    if not python or run(python, "--version").returncode != 0:
+        pytest.skip(f"left out: no Python {version} on this machine")
+    assert script(python=python, path=distribution, code=smoke(device)) == script(path=distribution, code=smoke(device))
+
+
+@pytest.mark.parametrize("version", VERSIONS)
+def test_syntax_of_every_python_version(version: str, distribution: Path) -> None:
+    """Reads as the syntax of the version, as far as this Python knows it."""
     feature = (3, min(int(version.split(".")[1]), sys.version_info[1]))
     sources = sorted((distribution / PACKAGE).glob("*.py*"))
     assert sources

@@ -2,7 +2,6 @@
 
 import json
 import re
-import shutil
 import subprocess
 from pathlib import Path
 
@@ -17,7 +16,7 @@ from generator.naming import screaming, snake
 
 CODE_AND_CONSTANTS = (".text", ".rodata", ".data.rel.ro")
 """Sections that count; constants with addresses in them go to the last one."""
-COMPILERS = [name for name in ("cc", "clang") if name == "cc" or shutil.which(name)]
+COMPILERS = ("cc", "clang")
 OPTIMISATIONS = ("-O2", "-Os")
 
 
