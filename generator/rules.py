@@ -11,7 +11,7 @@ RULES: dict[str, str] = {
     "yaml-anchor": "Anchors and aliases are not allowed; a fact stands where it is read.",
     "yaml-tag": "Tags are not allowed; spec holds plain data.",
     "yaml-depth": "Mappings and sequences nest at most 24 deep.",
-    "yaml-key": "Keys are plain text on one line, at most 100 characters.",
+    "yaml-key": "Keys are plain text on one line, not longer than a public name can be.",
     "yaml-number": "Integers have at most 20 characters.",
     "yaml-null": "No value is empty; what is unknown is left out.",
     "file-unknown": "Every file in spec is of a known kind and stands in its place.",
