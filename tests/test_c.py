@@ -286,7 +286,7 @@ def expected_subindex(sub: SubIndex, prefix: str) -> Values:
 def error_digits(error: ErrorEntry, device: Device) -> int:
     known = {"device": 8, "sdo_abort": 8, "emergency": 4}
     highest = max(e.last for e in device.errors if e.kind == error.kind)
-    return known.get(error.kind, 2 if highest < 2**8 else 4 if highest < 2**16 else 8)
+    return known.get(error.kind, 4 if highest < 2**16 else 8)
 
 
 def expected_errors(device: Device, name: str) -> Values:

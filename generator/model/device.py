@@ -151,6 +151,11 @@ class Device:
         listed = any(error.kind == "device" for error in self.errors)
         return self.drive.error_mask if self.drive and listed else 0
 
+    def error_bits(self, kind: str) -> int:
+        """Bits of the error numbers of a kind, 16 or 32: as many as the largest of the list needs."""
+        largest = max((error.last for error in self.errors if error.kind == kind), default=0)
+        return 16 if largest < 1 << 16 else 32
+
     def codes_of_slot(self, slot: str | None) -> tuple[Code, ...]:
         """Codes that a master sees with the module in ``slot``: those of the base drive and of the slot."""
         return tuple(c for c in self.codes if c.slot is None or c.slot == slot)

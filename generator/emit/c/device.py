@@ -31,8 +31,6 @@ _OBJECT_ACCESS = {
     "rwr": ("read", "write", "pdo_map_tx"),
     "rww": ("read", "write", "pdo_map_rx"),
 }
-_ERROR_BITS = {"device": 32, "sdo_abort": 32, "emergency": 16}
-"""Widths of error numbers that a format sets; those of other kinds are as wide as the largest number needs."""
 
 
 def device_header(model: Model, device: Device, names: Names) -> Header:
@@ -43,8 +41,7 @@ def device_header(model: Model, device: Device, names: Names) -> Header:
     sections += [_code(code, device, prefix, names) for code in device.codes]
     sections += [_object(entry, device, prefix, names) for entry in device.objects]
     sections += [_identifiers(table, device, prefix, names) for table in device.tables if identified(table)]
-    widths = error_widths(device)
-    sections += [_error(error, device, widths[error.kind], names) for error in device.errors]
+    sections += [_error(error, device, device.error_bits(error.kind), names) for error in device.errors]
     return Header(
         f"{device.id}.h",
         guard,
@@ -71,15 +68,6 @@ def _identifiers(table: Table, device: Device, prefix: str, names: Names) -> Sec
 def device_prefix(device: Device) -> str:
     """How the names of a device's constants begin."""
     return screaming(device.id)
-
-
-def error_widths(device: Device) -> dict[str, int]:
-    """Bits of the error numbers of each kind."""
-    widths: dict[str, int] = {}
-    for error in device.errors:
-        needed = next(bits for bits in (8, 16, 32) if error.last < 1 << bits)
-        widths[error.kind] = _ERROR_BITS.get(error.kind, max(needed, widths.get(error.kind, 0)))
-    return widths
 
 
 def _device(device: Device, prefix: str, names: Names) -> Section:
@@ -261,7 +249,7 @@ def _subindex(run: Sequence[SubIndex], writer: Writer) -> None:
 
 def error_symbols(device: Device, error: ErrorEntry) -> tuple[str, ...]:
     """Names of the constants of an error: one, or those of both ends of a run."""
-    name = f"{_error_prefix(device, error, error_widths(device)[error.kind])}_{error_name(error).upper()}"
+    name = f"{_error_prefix(device, error, device.error_bits(error.kind))}_{error_name(error).upper()}"
     return (name,) if error.count == 1 else run_names(name)
 
 

@@ -299,7 +299,7 @@ class DeviceFiles:
 
     def _error_kind(self, kind: str) -> str:
         errors = self.error_tables[kind]
-        digits = 4 if errors[-1].last <= 0xFFFF else 8
+        digits = self.device.error_bits(kind) // 4
         scope = Scope(f"errors of kind {kind} of {self.module.name}")
         for name in ("TABLE", "ENTRIES", "HELP", "INDEX", "PLACES", "SEEDS"):
             scope.add(name, self.device.where)

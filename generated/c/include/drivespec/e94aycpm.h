@@ -2286,249 +2286,249 @@ typedef enum e94aycpm_pnu963_sub0_opt {
 /** @} */
 
 /**
- * @name 0x00 Impermissible parameter number
+ * @name 0x0000 Impermissible parameter number
  * There is no such parameter.
  * EDS94AYCPM-EN-12.0, 9.3.4 p. 70.
  * @{
  */
-#define E94AYCPM_DPV1_00_IMPERMISSIBLE_PARAMETER_NUMBER 0x00u ///< error number
+#define E94AYCPM_DPV1_0000_IMPERMISSIBLE_PARAMETER_NUMBER 0x0000u ///< error number
 /** @} */
 
 /**
- * @name 0x01 Parameter value cannot be changed
+ * @name 0x0001 Parameter value cannot be changed
  * The parameter cannot be changed. Additional information: subindex.
  * EDS94AYCPM-EN-12.0, 9.3.4 p. 70.
  * @{
  */
-#define E94AYCPM_DPV1_01_PARAMETER_VALUE_CANNOT_BE_CHANGED 0x01u ///< error number
+#define E94AYCPM_DPV1_0001_PARAMETER_VALUE_CANNOT_BE_CHANGED 0x0001u ///< error number
 /** @} */
 
 /**
- * @name 0x02 Lower or upper value limit exceeded
+ * @name 0x0002 Lower or upper value limit exceeded
  * The value lies outside its limits. Additional information: subindex.
  * EDS94AYCPM-EN-12.0, 9.3.4 p. 70.
  * @{
  */
-#define E94AYCPM_DPV1_02_LOWER_OR_UPPER_VALUE_LIMIT_EXCEEDED 0x02u ///< error number
+#define E94AYCPM_DPV1_0002_LOWER_OR_UPPER_VALUE_LIMIT_EXCEEDED 0x0002u ///< error number
 /** @} */
 
 /**
- * @name 0x03 Faulty subindex
+ * @name 0x0003 Faulty subindex
  * There is no such subindex. Additional information: subindex.
  * EDS94AYCPM-EN-12.0, 9.3.4 p. 70.
  * @{
  */
-#define E94AYCPM_DPV1_03_FAULTY_SUBINDEX 0x03u ///< error number
+#define E94AYCPM_DPV1_0003_FAULTY_SUBINDEX 0x0003u ///< error number
 /** @} */
 
 /**
- * @name 0x04 No array
+ * @name 0x0004 No array
  * A subindex was given for a parameter that has none.
  * EDS94AYCPM-EN-12.0, 9.3.4 p. 70.
  * Erratum dpv1-non-indicated: printed: non-indicated parameter (9.3.4, 0x0004, explanation p. 70), No array (9.3.4,
  * 0x0004, description p. 70); used: non-indexed parameter.
  * @{
  */
-#define E94AYCPM_DPV1_04_NO_ARRAY 0x04u ///< error number
+#define E94AYCPM_DPV1_0004_NO_ARRAY 0x0004u ///< error number
 /** @} */
 
 /**
- * @name 0x05 Wrong data type
+ * @name 0x0005 Wrong data type
  * The value does not fit the data type of the parameter.
  * EDS94AYCPM-EN-12.0, 9.3.4 p. 70.
  * @{
  */
-#define E94AYCPM_DPV1_05_WRONG_DATA_TYPE 0x05u ///< error number
+#define E94AYCPM_DPV1_0005_WRONG_DATA_TYPE 0x0005u ///< error number
 /** @} */
 
 /**
- * @name 0x06 No setting permitted (only resettable)
+ * @name 0x0006 No setting permitted (only resettable)
  * Only 0 may be written, which resets the parameter. Additional information: subindex.
  * EDS94AYCPM-EN-12.0, 9.3.4 p. 70.
  * @{
  */
-#define E94AYCPM_DPV1_06_NO_SETTING_PERMITTED_ONLY_RESETTABLE 0x06u ///< error number
+#define E94AYCPM_DPV1_0006_NO_SETTING_PERMITTED_ONLY_RESETTABLE 0x0006u ///< error number
 /** @} */
 
 /**
- * @name 0x07 Description element cannot be changed
+ * @name 0x0007 Description element cannot be changed
  * This element of the description cannot be changed. Additional information: subindex.
  * EDS94AYCPM-EN-12.0, 9.3.4 p. 70.
  * @{
  */
-#define E94AYCPM_DPV1_07_DESCRIPTION_ELEMENT_CANNOT_BE_CHANGED 0x07u ///< error number
+#define E94AYCPM_DPV1_0007_DESCRIPTION_ELEMENT_CANNOT_BE_CHANGED 0x0007u ///< error number
 /** @} */
 
 /**
- * @name 0x08 Reserved
+ * @name 0x0008 Reserved
  * Profile V2 only: the PPO write that the request names is not available.
  * EDS94AYCPM-EN-12.0, 9.3.4 p. 70.
  * @{
  */
-#define E94AYCPM_DPV1_08_RESERVED 0x08u ///< error number
+#define E94AYCPM_DPV1_0008_RESERVED 0x0008u ///< error number
 /** @} */
 
 /**
- * @name 0x09 Description data not available
+ * @name 0x0009 Description data not available
  * The parameter has a value, but no description.
  * EDS94AYCPM-EN-12.0, 9.3.4 p. 70.
  * @{
  */
-#define E94AYCPM_DPV1_09_DESCRIPTION_DATA_NOT_AVAILABLE 0x09u ///< error number
+#define E94AYCPM_DPV1_0009_DESCRIPTION_DATA_NOT_AVAILABLE 0x0009u ///< error number
 /** @} */
 
 /**
- * @name 0x0A Reserved
+ * @name 0x000A Reserved
  * Profile V2 only: wrong access group.
  * EDS94AYCPM-EN-12.0, 9.3.4 p. 70.
  * @{
  */
-#define E94AYCPM_DPV1_0A_RESERVED 0x0Au ///< error number
+#define E94AYCPM_DPV1_000A_RESERVED 0x000Au ///< error number
 /** @} */
 
 /**
- * @name 0x0B No parameter change rights
+ * @name 0x000B No parameter change rights
  * The master has no right to change parameters.
  * EDS94AYCPM-EN-12.0, 9.3.4 p. 70.
  * @{
  */
-#define E94AYCPM_DPV1_0B_NO_PARAMETER_CHANGE_RIGHTS 0x0Bu ///< error number
+#define E94AYCPM_DPV1_000B_NO_PARAMETER_CHANGE_RIGHTS 0x000Bu ///< error number
 /** @} */
 
 /**
- * @name 0x0C Reserved
+ * @name 0x000C Reserved
  * Profile V2 only: wrong password.
  * EDS94AYCPM-EN-12.0, 9.3.4 p. 70.
  * @{
  */
-#define E94AYCPM_DPV1_0C_RESERVED 0x0Cu ///< error number
+#define E94AYCPM_DPV1_000C_RESERVED 0x000Cu ///< error number
 /** @} */
 
 /**
- * @name 0x0D Reserved
+ * @name 0x000D Reserved
  * Profile V2 only: the text cannot be read in cyclic traffic.
  * EDS94AYCPM-EN-12.0, 9.3.4 p. 70.
  * @{
  */
-#define E94AYCPM_DPV1_0D_RESERVED 0x0Du ///< error number
+#define E94AYCPM_DPV1_000D_RESERVED 0x000Du ///< error number
 /** @} */
 
 /**
- * @name 0x0E Reserved
+ * @name 0x000E Reserved
  * Profile V2 only: the name cannot be read in cyclic traffic.
  * EDS94AYCPM-EN-12.0, 9.3.4 p. 70.
  * @{
  */
-#define E94AYCPM_DPV1_0E_RESERVED 0x0Eu ///< error number
+#define E94AYCPM_DPV1_000E_RESERVED 0x000Eu ///< error number
 /** @} */
 
 /**
- * @name 0x0F No text array available
+ * @name 0x000F No text array available
  * The parameter has a value, but no array of texts.
  * EDS94AYCPM-EN-12.0, 9.3.4 p. 70.
  * @{
  */
-#define E94AYCPM_DPV1_0F_NO_TEXT_ARRAY_AVAILABLE 0x0Fu ///< error number
+#define E94AYCPM_DPV1_000F_NO_TEXT_ARRAY_AVAILABLE 0x000Fu ///< error number
 /** @} */
 
 /**
- * @name 0x10 Reserved
+ * @name 0x0010 Reserved
  * Profile V2 only: PPO write is missing.
  * EDS94AYCPM-EN-12.0, 9.3.4 p. 70.
  * @{
  */
-#define E94AYCPM_DPV1_10_RESERVED 0x10u ///< error number
+#define E94AYCPM_DPV1_0010_RESERVED 0x0010u ///< error number
 /** @} */
 
 /**
- * @name 0x11 Request cannot be executed due to the operating state
+ * @name 0x0011 Request cannot be executed due to the operating state
  * No access at the moment, for a reason that is not told.
  * EDS94AYCPM-EN-12.0, 9.3.4 p. 70.
  * @{
  */
-#define E94AYCPM_DPV1_11_REQUEST_CANNOT_BE_EXECUTED_DUE_TO_THE_OPERATING_STATE 0x11u ///< error number
+#define E94AYCPM_DPV1_0011_REQUEST_CANNOT_BE_EXECUTED_DUE_TO_THE_OPERATING_STATE 0x0011u ///< error number
 /** @} */
 
 /**
- * @name 0x12 Reserved
+ * @name 0x0012 Reserved
  * Profile V2 only: any other error.
  * EDS94AYCPM-EN-12.0, 9.3.4 p. 70.
  * @{
  */
-#define E94AYCPM_DPV1_12_RESERVED 0x12u ///< error number
+#define E94AYCPM_DPV1_0012_RESERVED 0x0012u ///< error number
 /** @} */
 
 /**
- * @name 0x13 Reserved
+ * @name 0x0013 Reserved
  * Profile V2 only: the date cannot be read in cyclic traffic.
  * EDS94AYCPM-EN-12.0, 9.3.4 p. 70.
  * @{
  */
-#define E94AYCPM_DPV1_13_RESERVED 0x13u ///< error number
+#define E94AYCPM_DPV1_0013_RESERVED 0x0013u ///< error number
 /** @} */
 
 /**
- * @name 0x14 Value impermissible
+ * @name 0x0014 Value impermissible
  * The value lies inside its limits, but is never allowed (the parameter has single values). Additional information:
  * subindex.
  * EDS94AYCPM-EN-12.0, 9.3.4 p. 70.
  * @{
  */
-#define E94AYCPM_DPV1_14_VALUE_IMPERMISSIBLE 0x14u ///< error number
+#define E94AYCPM_DPV1_0014_VALUE_IMPERMISSIBLE 0x0014u ///< error number
 /** @} */
 
 /**
- * @name 0x15 Response too long
+ * @name 0x0015 Response too long
  * The response is longer than a data block.
  * EDS94AYCPM-EN-12.0, 9.3.4 p. 70.
  * @{
  */
-#define E94AYCPM_DPV1_15_RESPONSE_TOO_LONG 0x15u ///< error number
+#define E94AYCPM_DPV1_0015_RESPONSE_TOO_LONG 0x0015u ///< error number
 /** @} */
 
 /**
- * @name 0x16 Parameter address impermissible
+ * @name 0x0016 Parameter address impermissible
  * Attribute, number of subindices, parameter number or subindex is not allowed or not supported, alone or together.
  * EDS94AYCPM-EN-12.0, 9.3.4 p. 70.
  * @{
  */
-#define E94AYCPM_DPV1_16_PARAMETER_ADDRESS_IMPERMISSIBLE 0x16u ///< error number
+#define E94AYCPM_DPV1_0016_PARAMETER_ADDRESS_IMPERMISSIBLE 0x0016u ///< error number
 /** @} */
 
 /**
- * @name 0x17 Format impermissible
+ * @name 0x0017 Format impermissible
  * Write request: the format of the value is not allowed or not supported.
  * EDS94AYCPM-EN-12.0, 9.3.4 p. 70.
  * @{
  */
-#define E94AYCPM_DPV1_17_FORMAT_IMPERMISSIBLE 0x17u ///< error number
+#define E94AYCPM_DPV1_0017_FORMAT_IMPERMISSIBLE 0x0017u ///< error number
 /** @} */
 
 /**
- * @name 0x18 Number of values not consistent
+ * @name 0x0018 Number of values not consistent
  * Write request: there are more or fewer values than subindices in the address.
  * EDS94AYCPM-EN-12.0, 9.3.4 p. 70.
  * @{
  */
-#define E94AYCPM_DPV1_18_NUMBER_OF_VALUES_NOT_CONSISTENT 0x18u ///< error number
+#define E94AYCPM_DPV1_0018_NUMBER_OF_VALUES_NOT_CONSISTENT 0x0018u ///< error number
 /** @} */
 
 /**
- * @name 0x19 Reserved
+ * @name 0x0019 Reserved
  * EDS94AYCPM-EN-12.0, 9.3.4 p. 70.
  * @{
  */
-#define E94AYCPM_DPV1_19_RESERVED_FIRST 0x19u ///< first number
-#define E94AYCPM_DPV1_19_RESERVED_LAST 0x64u ///< last number
+#define E94AYCPM_DPV1_0019_RESERVED_FIRST 0x0019u ///< first number
+#define E94AYCPM_DPV1_0019_RESERVED_LAST 0x0064u ///< last number
 /** @} */
 
 /**
- * @name 0x65 Manufacturer-specific
+ * @name 0x0065 Manufacturer-specific
  * EDS94AYCPM-EN-12.0, 9.3.4 p. 71.
  * @{
  */
-#define E94AYCPM_DPV1_65_MANUFACTURER_SPECIFIC_FIRST 0x65u ///< first number
-#define E94AYCPM_DPV1_65_MANUFACTURER_SPECIFIC_LAST 0xFFu ///< last number
+#define E94AYCPM_DPV1_0065_MANUFACTURER_SPECIFIC_FIRST 0x0065u ///< first number
+#define E94AYCPM_DPV1_0065_MANUFACTURER_SPECIFIC_LAST 0x00FFu ///< last number
 /** @} */
 
 #endif
