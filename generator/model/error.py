@@ -27,8 +27,8 @@ class ErrorEntry:
 
     ``kind``: "device" (32-bit error number), "emergency", "sdo_abort", "dpv0", "dpv1" or "gci".
     ``response``: preset response, by its name in the drive's list.  ``responses``: those that can be selected.
-    ``adjustable_in``: codes that set the response, of a run one for each number; ``named_in`` is what the manual
-    names, codes that do not exist included.
+    ``adjustable_in``: codes that set the response: of a run one for each number where there are as many, else those
+    of every slot.  ``named_in`` is what the manual names, codes that do not exist included.
     ``printed_names``: (place, name) where a place prints another name.
     """
 
